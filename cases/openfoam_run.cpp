@@ -1,10 +1,13 @@
 #include "cases/openfoam_run.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "cases/openfoam_result.h"
 #include "core/error.h"
@@ -37,6 +40,47 @@ fs::path newest_log(const fs::path& folder) {
         }
     }
     return newest;
+}
+
+/// Seconds of one iteration, of those that stand in the end of a log.
+std::optional<double> pace(std::string_view log) {
+    std::optional<double> first_time, first_clock, time, clock, iteration;
+    for (const auto line : core::split(log, '\n')) {
+        if (line.starts_with("Time = ")) {
+            iteration = core::parse_number(line.substr(7, line.find_first_of(" s", 7) - 7));
+        } else if (line.starts_with("ExecutionTime = ") && iteration) {
+            time = iteration;
+            clock = core::parse_number(line.substr(16, line.find(' ', 16) - 16));
+            first_time = first_time.value_or(*time);
+            first_clock = first_clock ? first_clock : clock;
+        }
+    }
+    const bool known = clock && first_clock && *time > *first_time && *clock >= *first_clock;
+    return known ? std::optional((*clock - *first_clock) / (*time - *first_time)) : std::nullopt;
+}
+
+/// Times that a run on several cores wrote and that were never put together.
+void put_together(const fs::path& folder, const std::vector<std::pair<std::string, std::string>>& environment) {
+    std::error_code ignored;
+    for (const char* part : {".", "start"}) {
+        const fs::path at = folder / part;
+        if (!fs::is_directory(at / "processor0", ignored)) {
+            continue;
+        }
+        const auto reconstruct = find_program("reconstructPar");
+        if (std::string_view(part) == "." && reconstruct) {
+            ChildProcess child(reconstruct->string(), {"-newTimes"}, folder, folder / "log.reconstructPar",
+                               environment);
+            while (!child.ended()) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            }
+        }
+        for (const auto& entry : fs::directory_iterator(at, ignored)) {
+            if (entry.path().filename().string().starts_with("processor")) {
+                fs::remove_all(entry.path(), ignored);
+            }
+        }
+    }
 }
 
 /// What OpenFOAM said when it failed: the lines of its fatal error, else the last ones.
@@ -90,6 +134,9 @@ RunState run_state(const fs::path& folder) {
         const std::string_view rest = std::string_view(text).substr(at + 8);
         if (const auto time = core::parse_number(rest.substr(0, rest.find_first_of(" s\n")))) {
             state.iteration = static_cast<int>(std::lround(*time / step.value_or(1)));
+            if (const auto each = pace(text); each && state.iterations >= state.iteration) {
+                state.seconds_left = *each / step.value_or(1) * (state.iterations - state.iteration);
+            }
         }
     }
     return state;
@@ -143,7 +190,7 @@ void need_openfoam() {
     }
 }
 
-OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
+OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
     : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
@@ -156,6 +203,15 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
         throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
     }
     need_openfoam();
+    if (cores > 1) {
+        for (const char* program : {"mpirun", "decomposePar", "reconstructPar"}) {
+            if (!find_program(program)) {
+                throw core::SystemError(
+                    "missing", std::string("a case on several cores needs '") + program + "', which is not on the PATH",
+                    {}, "install it: apt install openfoam openmpi-bin");
+            }
+        }
+    }
     lock_ = Lock::take(folder_ / ".underbody.lock", "solve");
     if (!lock_) {
         throw core::InputError(
@@ -163,14 +219,20 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock)
             "the case is being solved by " + Lock::holder(folder_ / ".underbody.lock").value_or("another process"),
             {folder_.string(), {}, {}, {}}, "wait for it, or end it first");
     }
-    from_ = ready_to_go_on(folder_);
-    if (!from_ && solves_anew(folder_)) {
-        set_results_aside(folder_);
-    }
     // Debian's OpenFOAM needs this one variable and nothing sourced.
     std::vector<std::pair<std::string, std::string>> environment;
     if (std::getenv("WM_PROJECT_DIR") == nullptr) {
         environment.emplace_back("WM_PROJECT_DIR", "/usr/share/openfoam");
+    }
+    put_together(folder_, environment);
+    from_ = ready_to_go_on(folder_);
+    if (!from_ && solves_anew(folder_)) {
+        set_results_aside(folder_);
+    }
+    environment.emplace_back("UNDERBODY_CORES", std::to_string(std::max(1, cores)));
+    if (cores > 1 && ::geteuid() == 0) {  // Open MPI wants to be told twice that root may
+        environment.emplace_back("OMPI_ALLOW_RUN_AS_ROOT", "1");
+        environment.emplace_back("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     }
     const fs::path at = fs::absolute(folder_);
     std::vector<std::string> words = {"./Allrun"};

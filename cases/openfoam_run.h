@@ -16,9 +16,11 @@ void need_openfoam();
 
 /// How far a case is.
 struct RunState {
-    std::string step;                       ///< "snappyHexMesh", "simpleFoam", ...: the newest log
-    int iteration = 0;                      ///< of the solver; 0 while the mesh is made
-    int iterations = 0;                     ///< as system/controlDict wants (endTime over deltaT); 0: not said
+    std::string step;    ///< "snappyHexMesh", "simpleFoam", ...: the newest log
+    int iteration = 0;   ///< of the solver; 0 while the mesh is made
+    int iterations = 0;  ///< as system/controlDict wants (endTime over deltaT); 0: not said
+    /// s, to the last iteration at the pace of the latest ones; a run that settles ends earlier.
+    std::optional<double> seconds_left;
     [[nodiscard]] double fraction() const;  ///< 0..1, the mesh being a tenth
 };
 RunState run_state(const std::filesystem::path& folder);
@@ -46,8 +48,9 @@ class OpenFoamRun {
 public:
     /// Throws core::InputError when the folder is no case with an Allrun, when another process solves it (kind "busy"),
     /// and as need_openfoam().
-    /// `lock`: the descriptor of a lock of the caller's that is to last as long as the solver runs; -1: none.
-    explicit OpenFoamRun(std::filesystem::path folder, int lock = -1);
+    /// `lock`: the descriptor of a lock of the caller's that is to last as long as the solver runs; -1: none. `cores`:
+    /// more than one by MPI; what a run that was cut left decomposed is put together first.
+    explicit OpenFoamRun(std::filesystem::path folder, int lock = -1, int cores = 1);
 
     /// True when its script has ended well. Ends a run whose loads have settled, where the case waits for that. Throws
     /// core::InputError with the solver's own last words when it failed (kind "solver"), or was ended by a signal (kind

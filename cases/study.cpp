@@ -420,6 +420,18 @@ SlurmSpec read_slurm(const TomlTable& table) {
         }
         *number = static_cast<int>(value);
     }
+    for (const auto& [key, number, least, most] :
+         {std::tuple{"cores", &slurm.cores, 1, 4096}, {"retries", &slurm.retries, 0, 100}}) {
+        const auto value = table.integer_or(key, *number);
+        if (value < least || value > most) {
+            throw core::InputError("range",
+                                   table.path_of(key) + " is " + std::to_string(value) + ": " + std::to_string(least) +
+                                       " to " + std::to_string(most),
+                                   table.place(key));
+        }
+        *number = static_cast<int>(value);
+    }
+    slurm.run_study = table.boolean_or("run_study", false);
     slurm.options = table.has("options") ? table.strings("options") : std::vector<std::string>{};
     for (const auto& option : slurm.options) {
         if (!option.starts_with("-") || option.find('\n') != std::string::npos) {

@@ -158,6 +158,9 @@ struct SlurmSpec {
     std::string account;
     int throttle = 0;                  ///< tasks at a time; 0: as many as there is room for
     int max_array = 0;                 ///< tasks in one array; 0: ask scontrol
+    int cores = 1;                     ///< of one case, by MPI
+    int retries = 0;                   ///< of a case whose solver was ended or failed
+    bool run_study = false;            ///< a job that runs the study when the arrays have ended
     std::vector<std::string> options;  ///< further ones, "--nice=100"
 };
 

@@ -131,6 +131,9 @@ std::vector<FileTable> sweep() {
           {"throttle", "whole number", "8", "0 (no limit)", "cases at a time"},
           {"max_array", "whole number", "1000", "0 (what scontrol says, else 1000)",
            "cases in one job array; more make several"},
+          {"cores", "whole number", "8", "1", "cores of a case: decomposed, run by MPI, put together again"},
+          {"retries", "whole number", "2", "0", "how often a case is tried again whose solver was ended or failed"},
+          {"run_study", "true or false", "true", "false", "a job more that runs the study when the arrays have ended"},
           {"options", "list of texts", "[\"--nice=100\"]", "none", "further options of sbatch"}}},
         conditions("sweep.conditions", "further conditions of these cases", "conditions = { mesh = \"coarse\" }")};
     const auto of_mesh = case_mesh_keys(usual.mesh.density);

@@ -27,6 +27,7 @@ struct Job {
     CaseRecord record;
     std::unique_ptr<OpenFoamRun> run;
     SweepOutcome outcome;
+    int retries = 0;
     bool started = false;
     bool over = false;
 };
@@ -123,8 +124,7 @@ private:
             return;
         }
         try {
-            prepare(job);
-            job.run = std::make_unique<OpenFoamRun>(beside(job.wanted.folder, ".unfinished"), job.lock->descriptor());
+            begin(job);
         } catch (const core::InputError& error) {  // this body cannot be placed so; others can
             fail(job, error.what());
             return;
@@ -135,6 +135,31 @@ private:
                                               : "goes on with the mesh that is there";
         const std::string why = job.wanted.state == SweepState::stale ? job.wanted.reason : "";
         job.outcome.note = why + (why.empty() || where.empty() ? "" : "; ") + where;
+    }
+
+    void begin(Job& job) {
+        prepare(job);
+        job.run = std::make_unique<OpenFoamRun>(beside(job.wanted.folder, ".unfinished"), job.lock->descriptor(),
+                                                options_.cores);
+    }
+
+    /// Tries a case again, whose lock and mark it keeps. Of the same inputs a solution diverges again.
+    bool tried_again(Job& job, const core::InputError& error) {
+        if (job.retries >= options_.retries ||
+            std::string_view(error.what()).find("diverged") != std::string_view::npos) {
+            return false;
+        }
+        ++job.retries;
+        job.outcome.note += (job.outcome.note.empty() ? "" : "; ") + std::string("tried again (") +
+                            std::to_string(job.retries) + " of " + std::to_string(options_.retries) +
+                            "): " + error.what();
+        job.run.reset();
+        try {
+            begin(job);
+        } catch (const core::InputError& again) {
+            fail(job, again.what());
+        }
+        return true;
     }
 
     /// The case in NAME.unfinished: as it was left when it is made of the same, else written anew.
@@ -179,6 +204,9 @@ private:
                     finish(job);
                 }
             } catch (const core::InputError& error) {
+                if (tried_again(job, error)) {
+                    continue;
+                }
                 if (error.kind() == "killed" || error.kind() == "cut") {
                     fail(job, error.what());  // what is there stays: the next sweep goes on from it
                 } else {

@@ -31,7 +31,9 @@ struct SweepCase {
     std::filesystem::path folder;
     SweepState state = SweepState::missing;
     std::string reason;
-    bool present = false;  ///< solved or present: nothing to be made
+    bool present = false;                ///< solved or present: nothing to be made
+    int iteration = 0, iterations = 0;   ///< of one that runs or was cut; 0: not begun
+    std::optional<double> seconds_left;  ///< of one that runs, at most
 };
 
 /// Every body of the sweep at every gap, pitch and speed, in that order, with their states. A case counts as solved
@@ -57,7 +59,9 @@ enum class StaleCases {
 };
 
 struct SweepOptions {
-    int jobs = 1;                     ///< cases at a time; each runs on one core
+    int jobs = 1;     ///< cases at a time
+    int cores = 1;    ///< of each case, by MPI
+    int retries = 0;  ///< of a case whose solver was ended or failed; one that diverged is not tried again
     std::optional<std::string> only;  ///< this case alone, by name
     StaleCases stale = StaleCases::redo;
     std::string submission;  ///< of the Slurm job whose task this is: its own cases are not somebody else's

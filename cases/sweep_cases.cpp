@@ -198,9 +198,23 @@ private:
     std::map<std::string, List> by_number_;
 };
 
-/// How far the one that is in the making has come: "iteration 150 of 400".
-std::string how_far(const fs::path& unfinished) {
+/// "40 s", "12 min", "3 h"
+std::string in_words(double seconds) {
+    return seconds < 100    ? core::format_number(std::ceil(seconds)) + " s"
+           : seconds < 6000 ? core::format_number(std::ceil(seconds / 60)) + " min"
+                            : core::format_number(std::ceil(seconds / 3600)) + " h";
+}
+
+/// How far the one that is in the making has come: "iteration 150 of 400, at most 12 min left".
+std::string how_far(SweepCase& one, const fs::path& unfinished, bool runs) {
     const RunState state = run_state(unfinished);
+    one.iteration = state.iteration;
+    one.iterations = state.iterations;
+    if (runs && state.seconds_left) {
+        one.seconds_left = state.seconds_left;
+        return "iteration " + std::to_string(state.iteration) + " of " + std::to_string(state.iterations) +
+               ", at most " + in_words(*state.seconds_left) + " left";
+    }
     return state.iteration > 0
                ? "iteration " + std::to_string(state.iteration) + " of " + std::to_string(state.iterations)
            : state.step.empty() ? "begun"
@@ -350,7 +364,7 @@ private:
         std::error_code ignored;
         if (const auto holder = holds_locks_ ? std::nullopt : Lock::holder(beside(one.folder, ".lock"))) {
             one.state = SweepState::running;
-            one.reason = how_far(unfinished) + ", by " + *holder;
+            one.reason = how_far(one, unfinished, true) + ", by " + *holder;
             return;
         }
         if (const auto claim = read_claim(one.folder); claim && claim->submission != submission_) {
@@ -359,15 +373,18 @@ private:
                 claim->job.empty() ? "" : " as job " + claim->job + "_" + std::to_string(claim->task);
             if (!state || !state->empty()) {
                 one.state = state && *state == "RUNNING" ? SweepState::running : SweepState::waiting;
+                const std::string far =
+                    one.state == SweepState::running ? ", " + how_far(one, unfinished, true) : std::string();
                 one.reason = "submitted" + job + ", " + claim->since +
                              (state ? ": " + core::lower_case(*state)
                                     : "; Slurm cannot be asked here: remove " + claim_file(one.folder).string() +
-                                          " if it is gone");
+                                          " if it is gone") +
+                             far;
                 return;
             }
         }
         if (one.state == SweepState::missing && fs::is_directory(unfinished, ignored)) {
-            one.reason = "cut at " + how_far(unfinished);
+            one.reason = "cut at " + how_far(one, unfinished, false);
         } else if (one.state == SweepState::missing && fs::is_directory(beside(one.folder, ".failed"), ignored)) {
             one.state = SweepState::failed;
             one.reason = failure_of(beside(one.folder, ".failed"));

@@ -15,6 +15,7 @@
 #include "cases/lock.h"
 #include "cases/sweep_parts.h"
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/text.h"
 
 namespace underbody::cases {
@@ -57,6 +58,12 @@ std::optional<Answer> ask(const std::string& program, const std::vector<std::str
 }
 
 std::string job_name(const std::string& submission) { return "underbody-sweep-" + submission; }
+
+/// Of the job that runs the study.
+std::string study_job_name(const Study& study) {
+    return "underbody-study-" +
+           core::content_hash(fs::weakly_canonical(fs::absolute(study.folder())).string()).substr(0, 12);
+}
 
 /// Unlikely to come again, on whatever machine.
 std::string new_submission() {
@@ -115,29 +122,53 @@ int tasks_per_array(const SlurmSpec& settings, core::Progress& progress) {
     return usual_max_array;
 }
 
+std::string folder_of(const Study& study) { return fs::absolute(study.folder()).lexically_normal().string(); }
+
+std::string site_options(const SlurmSpec& s) {
+    const auto option = [](const char* name, const std::string& value) {
+        return value.empty() ? std::string() : std::string("#SBATCH --") + name + "=" + value + "\n";
+    };
+    std::string text = option("partition", s.partition) + option("time", s.time) + option("mem", s.memory) +
+                       option("account", s.account);
+    for (const auto& further : s.options) {
+        text += "#SBATCH " + further + "\n";
+    }
+    return text;
+}
+
+/// Hands a script to sbatch; the job's number. `before`: what was submitted already, for the words of a refusal.
+std::string submitted(const fs::path& script, std::vector<std::string> arguments, std::size_t before,
+                      core::Progress& progress) {
+    arguments.insert(arguments.begin(), "--parsable");
+    arguments.push_back(fs::absolute(script).string());
+    const auto answer = ask("sbatch", arguments, fs::absolute(script).parent_path(), progress);
+    if (!answer || answer->code != 0) {
+        throw core::SystemError("slurm", "sbatch refused the job: " + (answer ? answer->text : ""),
+                                {script.string(), {}, {}, {}},
+                                before == 0 ? "" : std::to_string(before) + " arrays before it were submitted");
+    }
+    return answer->text.substr(0, answer->text.find_first_of(";\n"));
+}
+
 std::string script_text(const Study& study, const SlurmSubmission& what, const std::string& submission,
                         const std::vector<std::string>& names) {
     const SlurmSpec& s = what.settings;
     std::string title = study.title;
     std::replace(title.begin(), title.end(), '\n', ' ');
-    const std::string folder = fs::absolute(study.folder()).lexically_normal().string();
-    const auto option = [](const char* name, const std::string& value) {
-        return value.empty() ? std::string() : std::string("#SBATCH --") + name + "=" + value + "\n";
-    };
     std::string script = "#!/bin/sh\n# One task for each case that the study '" + title +
                          "' misses.\n#SBATCH --job-name=" + job_name(submission) + "\n#SBATCH --array=1-" +
                          std::to_string(names.size()) + (s.throttle > 0 ? "%" + std::to_string(s.throttle) : "") +
-                         "\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=1\n" + option("partition", s.partition) +
-                         option("time", s.time) + option("mem", s.memory) + option("account", s.account);
-    for (const auto& further : s.options) {
-        script += "#SBATCH " + further + "\n";
-    }
+                         "\n#SBATCH --nodes=1\n#SBATCH --ntasks=" + std::to_string(s.cores) +
+                         "\n#SBATCH --cpus-per-task=1\n# What was preempted goes on from its last checkpoint.\n#SBATCH "
+                         "--requeue\n" +
+                         site_options(s);
     script += "case \"$SLURM_ARRAY_TASK_ID\" in\n";
     for (std::size_t i = 0; i < names.size(); ++i) {
         script += std::to_string(i + 1) + ") name=" + quoted(names[i]) + " ;;\n";
     }
     return script + "*) echo 'run this as a Slurm job array' >&2; exit 2 ;;\nesac\nexec " + quoted(what.program) +
-           " sweep " + quoted(folder) + " --engine local --jobs 1 --only \"$name\" --submission " + submission +
+           " sweep " + quoted(folder_of(study)) + " --engine local --jobs 1 --cores " + std::to_string(s.cores) +
+           " --retries " + std::to_string(s.retries) + " --only \"$name\" --submission " + submission +
            (what.replace_stale ? " --stale replace"
             : what.keep_stale  ? " --stale keep"
                                : "") +
@@ -164,6 +195,25 @@ struct Claimed {
         }
     }
 };
+
+/// The job that runs the study when the arrays have ended, however.
+SlurmArray submit_study(const Study& study, const SlurmSubmission& what, const std::vector<SlurmArray>& arrays,
+                        core::Progress& progress) {
+    SlurmArray job;
+    job.script =
+        what.script.parent_path() / (what.script.stem().string() + "-study" + what.script.extension().string());
+    core::write_file(job.script, "#!/bin/sh\n# Runs the study when its cases are solved.\n#SBATCH --job-name=" +
+                                     study_job_name(study) + "\n#SBATCH --ntasks=1\n" + site_options(what.settings) +
+                                     "exec " + quoted(what.program) + " study run " + quoted(folder_of(study)) + "\n");
+    std::string after;
+    for (const SlurmArray& array : arrays) {
+        after += ":" + array.job;
+    }
+    if (!arrays.front().job.empty()) {
+        job.job = submitted(job.script, {"--dependency=afterany" + after}, arrays.size(), progress);
+    }
+    return job;
+}
 
 }  // namespace
 
@@ -212,9 +262,15 @@ std::optional<std::string> SlurmQueue::state(const SlurmClaim& claim) {
     return task == known->second->end() ? "" : task->second;
 }
 
-std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& what, core::Progress& progress) {
+bool SlurmQueue::has_any(const SlurmClaim& claim) {
+    (void)state(claim);
+    const auto& tasks = known_.at(claim.submission);
+    return tasks && !tasks->empty();
+}
+
+SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::Progress& progress) {
     if (!study.sweep) {
-        return (void)wanted_cases(study, {}, progress), std::vector<SlurmArray>{};  // says that there is none
+        return (void)wanted_cases(study, {}, progress), SlurmSweep{};  // says that there is none
     }
     SweepOptions options;
     options.stale = what.keep_stale ? StaleCases::keep : what.replace_stale ? StaleCases::replace : StaleCases::redo;
@@ -231,7 +287,8 @@ std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& 
     });
     const auto sbatch = find_program("sbatch");
     const auto most = static_cast<std::size_t>(wanted.empty() ? 1 : tasks_per_array(what.settings, progress));
-    std::vector<SlurmArray> arrays;
+    SlurmSweep all;
+    std::vector<SlurmArray>& arrays = all.arrays;
     for (std::size_t next = 0; next < wanted.size();) {
         Claimed claimed;
         SlurmArray array;
@@ -253,25 +310,82 @@ std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& 
             what.script.parent_path() / (what.script.stem().string() + number + what.script.extension().string());
         core::write_file(array.script, script_text(study, what, claimed.submission, array.names));
         if (sbatch) {
-            std::vector<std::string> arguments = {"--parsable"};
+            std::vector<std::string> arguments;
             if (what.settings.throttle > 0 && !arrays.empty()) {
                 arguments.push_back("--dependency=afterany:" + arrays.back().job);
             }
-            arguments.push_back(fs::absolute(array.script).string());
-            const auto answer = ask("sbatch", arguments, fs::absolute(array.script).parent_path(), progress);
-            if (!answer || answer->code != 0) {
+            try {
+                array.job = submitted(array.script, arguments, arrays.size(), progress);
+            } catch (const core::SystemError&) {
                 claimed.release();
-                throw core::SystemError(
-                    "slurm", "sbatch refused the job: " + (answer ? answer->text : ""),
-                    {array.script.string(), {}, {}, {}},
-                    arrays.empty() ? "" : std::to_string(arrays.size()) + " arrays before it were submitted");
+                throw;
             }
-            array.job = answer->text.substr(0, answer->text.find_first_of(";\n"));
             claimed.write_job(array.job);
         }
         arrays.push_back(std::move(array));
     }
-    return arrays;
+    if (what.settings.run_study && !arrays.empty()) {
+        all.study = submit_study(study, what, arrays, progress);
+    }
+    return all;
+}
+
+std::vector<SweepCase> wait_for_sweep(const Study& study, core::Progress& progress) {
+    auto pause = std::chrono::milliseconds(500);
+    while (true) {
+        auto cases = sweep_cases(study, progress);
+        double done = 0;
+        std::size_t open = 0;
+        for (const SweepCase& one : cases) {
+            const bool waits = one.state == SweepState::waiting || one.state == SweepState::running;
+            open += waits ? 1 : 0;
+            done += !waits ? 1 : one.iterations > 0 ? static_cast<double>(one.iteration) / one.iterations : 0;
+        }
+        if (open == 0) {
+            return cases;
+        }
+        progress.report(done / static_cast<double>(cases.size()), std::to_string(open) + " cases wait or run");
+        const auto until = std::chrono::steady_clock::now() + pause;
+        while (std::chrono::steady_clock::now() < until) {
+            progress.check();
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        pause = std::min(2 * pause, std::chrono::milliseconds(15000));
+    }
+}
+
+std::vector<std::string> cancel_sweep(const Study& study, core::Progress& progress) {
+    if (!study.sweep) {
+        (void)wanted_cases(study, {}, progress);  // says that there is none
+    }
+    if (!find_program("scancel")) {
+        throw core::SystemError("missing", "Slurm is not here: there is no 'scancel' on the PATH", {},
+                                "cancel where the sweep was submitted");
+    }
+    SlurmQueue queue;
+    std::map<std::string, std::string> jobs;  // by submission
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(study.folder() / study.sweep->folder, ignored)) {
+        if (entry.path().extension() != ".submitted") {
+            continue;
+        }
+        const auto claim = read_claim(entry.path().parent_path() / entry.path().stem());
+        if (claim && queue.has_any(*claim)) {
+            jobs.emplace(claim->submission, claim->job);
+        }
+    }
+    std::vector<std::string> names = {"--name=" + study_job_name(study)}, numbers;
+    for (const auto& [submission, job] : jobs) {
+        names.push_back("--name=" + job_name(submission));
+        numbers.push_back(job);
+    }
+    for (const auto& name : names) {
+        const auto answer = ask("scancel", {name}, ".", progress);
+        if (!answer || answer->code != 0) {
+            throw core::SystemError("slurm", "scancel refused: " + (answer ? answer->text : ""), {});
+        }
+    }
+    return numbers;
 }
 
 }  // namespace underbody::cases

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cases/study.h"
+#include "cases/sweep.h"
 #include "core/progress.h"
 
 namespace underbody::cases {
@@ -28,6 +29,8 @@ public:
     /// "PENDING", "RUNNING", ...; "" when Slurm no longer has it; nothing when it cannot be asked (no squeue here, or
     /// it fails).
     std::optional<std::string> state(const SlurmClaim& claim);
+    /// Does Slurm still have any task of its submission?
+    bool has_any(const SlurmClaim& claim);
 
 private:
     std::map<std::string, std::optional<std::map<int, std::string>>> known_;
@@ -40,6 +43,11 @@ struct SlurmArray {
     std::string job;                 ///< number; empty when there is no sbatch here
 };
 
+struct SlurmSweep {
+    std::vector<SlurmArray> arrays;   ///< empty when nothing is missing
+    std::optional<SlurmArray> study;  ///< the job that runs the study when they have ended (SlurmSpec::run_study)
+};
+
 struct SlurmSubmission {
     std::filesystem::path script;  ///< of the first array; those that follow are called NAME-2.sh, ...
     SlurmSpec settings;
@@ -49,10 +57,17 @@ struct SlurmSubmission {
 
 /// Writes the scripts of the missing cases, each task `program sweep STUDY --only NAME`, and submits them where there
 /// is an sbatch. Cases that wait or run already are left out, and marked as submitted before sbatch is called: nobody
-/// submits them twice. More cases than the site takes in one array (SlurmSpec::max_array, else what `scontrol` says,
-/// else 1000) make several; with a throttle one begins when the other has ended. Empty when nothing is missing. Throws
-/// core::SystemError: sbatch refuses (its cases are free again).
-std::vector<SlurmArray> submit_sweep(const Study& study, const SlurmSubmission& what,
-                                     core::Progress& progress = core::Progress::none());
+/// submits them twice. With several cores a task takes that many of one node. More cases than the site takes in one
+/// array (SlurmSpec::max_array, else what `scontrol` says, else 1000) make several; with a throttle one begins when the
+/// other has ended. Empty when nothing is missing. Throws core::SystemError: sbatch refuses (its cases are free again).
+SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what,
+                        core::Progress& progress = core::Progress::none());
+
+/// Waits until no case of the sweep waits or is being made; the cases as they are then. Throws core::Cancelled.
+std::vector<SweepCase> wait_for_sweep(const Study& study, core::Progress& progress);
+
+/// Cancels the jobs of the study that Slurm still has, also the one that would run the study; their numbers. What they
+/// had begun stays for the next sweep. Throws core::SystemError: there is no scancel here, or it refuses.
+std::vector<std::string> cancel_sweep(const Study& study, core::Progress& progress);
 
 }  // namespace underbody::cases

@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "geometry/cases/case_files.h"
 #include "geometry/cases/flow_domain.h"
+#include "geometry/cases/solver_script.h"
 
 namespace underbody::geometry {
 
@@ -207,8 +208,8 @@ private:
                "iterations;\n"
                "# `underbody solve` ends it when its forces have settled.\n"
                "cd \"$(dirname \"$0\")\" || exit 1\n"
-               ": \"${WM_PROJECT_DIR:=/usr/share/openfoam}\"\nexport WM_PROJECT_DIR\n"
-               "failed() {\n    echo \"$1 failed: see $(pwd)/log.$1\" >&2; tail -n 5 \"log.$1\" >&2; exit \"$2\"\n}\n"
+               ": \"${WM_PROJECT_DIR:=/usr/share/openfoam}\"\nexport WM_PROJECT_DIR\n" +
+               solver_functions() +
                "for last in [1-9]*; do :; done\n"
                "if [ \"$1\" != solve ]; then\n"
                "    [ ! -e \"$last/U\" ] || { echo \"there are results here: remove $last, or go on from it with "
@@ -220,11 +221,11 @@ private:
                "    echo start\n    rm -rf start/" +
                time +
                "\n    ln -sfn ../constant start/constant && ln -sfn ../0 start/0 || exit 1\n"
-               "    simpleFoam -case start > log.start 2>&1 || failed start $?\n"
+               "    rm -f log.start\n    solver start start\n"
                "    mv start/" +
                time + " " + time +
                " && rm -f start/constant start/0\nfi\n"
-               "echo simpleFoam\nsimpleFoam >> log.simpleFoam 2>&1 || failed simpleFoam $?\n";
+               "echo simpleFoam\nsolver . simpleFoam\n";
     }
 
     const BodyShape& shape_;

@@ -6,6 +6,7 @@
 #include "geometry/body/body_surface.h"
 #include "geometry/cases/case_files.h"
 #include "geometry/cases/flow_domain.h"
+#include "geometry/cases/solver_script.h"
 #include "geometry/mesh/mesh_file.h"
 
 namespace underbody::geometry {
@@ -238,8 +239,8 @@ private:
                "# ./Allrun mesh: the mesh alone. ./Allrun solve: goes on from the last time, on the mesh that is "
                "there.\n"
                "cd \"$(dirname \"$0\")\" || exit 1\n"
-               ": \"${WM_PROJECT_DIR:=/usr/share/openfoam}\"\nexport WM_PROJECT_DIR\n"
-               "failed() {\n    echo \"$1 failed: see $(pwd)/log.$1\" >&2; tail -n 5 \"log.$1\" >&2; exit \"$2\"\n}\n"
+               ": \"${WM_PROJECT_DIR:=/usr/share/openfoam}\"\nexport WM_PROJECT_DIR\n" +
+               solver_functions() +
                "step() {\n    echo \"$*\"\n    \"$@\" > \"log.$1\" 2>&1 || failed \"$1\" $?\n}\n"
                "if [ \"$1\" != solve ]; then\n"
                "    for time in [1-9]*; do\n"
@@ -251,7 +252,7 @@ private:
                "checkMesh\n"
                "    rm -f log.simpleFoam\nfi\n"
                "[ \"$1\" != mesh ] || exit 0\n"
-               "echo simpleFoam\nsimpleFoam >> log.simpleFoam 2>&1 || failed simpleFoam $?\n";
+               "echo simpleFoam\nsolver . simpleFoam\n";
     }
 
     const SurfaceMesh& body_;

@@ -113,9 +113,9 @@ int solve(Shell& shell, const std::string& folder, bool again) {
 struct SweepArguments {
     std::string study, engine = "local", only, script, stale = "redo", submission;
     std::string partition, time, memory, account, add, add_as;
-    std::optional<int> throttle, max_array;
+    std::optional<int> throttle, max_array, cores, retries;
     int jobs = 0;
-    bool list = false;
+    bool list = false, wait = false, cancel = false, run_study = false;
 };
 
 nlohmann::json conditions_of(const cases::Conditions& conditions) {
@@ -129,21 +129,46 @@ nlohmann::json conditions_of(const cases::Conditions& conditions) {
     return json;
 }
 
-int list_cases(Shell& shell, const cases::Study& study) {
+/// Prints them; how many are neither solved nor had elsewhere.
+int say_cases(Shell& shell, const std::vector<cases::SweepCase>& cases) {
     nlohmann::json all = nlohmann::json::array();
-    for (const auto& one : cases::sweep_cases(study, shell.progress())) {
+    int missing = 0;
+    for (const auto& one : cases) {
+        missing += one.present ? 0 : 1;
         const std::string state = to_string(one.state);
         all.push_back({{"name", one.name},
                        {"folder", one.folder.string()},
                        {"present", one.present},
                        {"state", state},
                        {"reason", one.reason},
+                       {"iteration", one.iteration},
+                       {"iterations", one.iterations},
+                       {"seconds_left", one.seconds_left ? nlohmann::json(*one.seconds_left) : nlohmann::json(nullptr)},
                        {"conditions", conditions_of(one.conditions)}});
         shell.print(state + std::string(9 - state.size(), ' ') + one.name + "  " + one.conditions.label() +
                     (one.reason.empty() ? "" : "  (" + one.reason + ")"));
     }
     if (shell.json) {
         shell.print_json({{"cases", all}});
+    }
+    return missing;
+}
+
+/// Until nothing waits or runs; wrong_input when a case is still missing then.
+int wait(Shell& shell, const cases::Study& study) {
+    return say_cases(shell, cases::wait_for_sweep(study, shell.progress())) == 0 ? done : wrong_input;
+}
+
+int cancel(Shell& shell, const cases::Study& study) {
+    const auto jobs = cases::cancel_sweep(study, shell.progress());
+    for (const auto& job : jobs) {
+        shell.print("job " + job + " cancelled; what it had begun stays for the next sweep");
+    }
+    if (jobs.empty()) {
+        shell.print("Slurm has no job of this sweep");
+    }
+    if (shell.json) {
+        shell.print_json({{"cancelled", jobs}});
     }
     return done;
 }
@@ -162,10 +187,14 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
     }
     what.settings.throttle = given.throttle.value_or(what.settings.throttle);
     what.settings.max_array = given.max_array.value_or(what.settings.max_array);
+    what.settings.cores = given.cores.value_or(what.settings.cores);
+    what.settings.retries = given.retries.value_or(what.settings.retries);
+    what.settings.run_study = given.run_study || what.settings.run_study;
     what.program = shell.program();
     what.keep_stale = given.stale == "keep";
     what.replace_stale = given.stale == "replace";
-    const auto arrays = cases::submit_sweep(study, what, shell.progress());
+    const auto all = cases::submit_sweep(study, what, shell.progress());
+    const auto& arrays = all.arrays;
     nlohmann::json json = nlohmann::json::array();
     for (const auto& array : arrays) {
         shell.print("wrote " + array.script.string() + " of " + std::to_string(array.names.size()) + " cases" +
@@ -176,13 +205,23 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
                         {"job", array.job.empty() ? nlohmann::json(nullptr) : nlohmann::json(array.job)},
                         {"cases", array.names}});
     }
+    nlohmann::json after = nullptr;
+    if (all.study) {
+        shell.print("wrote " + all.study->script.string() + ", which runs the study when they have ended" +
+                    (all.study->job.empty() ? "" : "; submitted as job " + all.study->job));
+        after = {{"script", all.study->script.string()},
+                 {"job", all.study->job.empty() ? nlohmann::json(nullptr) : nlohmann::json(all.study->job)}};
+    }
     if (arrays.empty()) {
         shell.print("nothing is missing that does not wait or run already");
+    }
+    if (given.wait) {
+        return wait(shell, study);
     }
     if (shell.json && arrays.empty()) {
         shell.print_json({{"missing", 0}, {"arrays", json}});
     } else if (shell.json) {
-        shell.print_json({{"script", json[0]["script"]}, {"job", json[0]["job"]}, {"arrays", json}});
+        shell.print_json({{"script", json[0]["script"]}, {"job", json[0]["job"]}, {"arrays", json}, {"study", after}});
     }
     return done;
 }
@@ -210,13 +249,25 @@ int sweep(Shell& shell, const SweepArguments& given) {
         return add_shape(shell, study, given);
     }
     if (given.list) {
-        return list_cases(shell, study);
+        say_cases(shell, cases::sweep_cases(study, shell.progress()));
+        return done;
+    }
+    if (given.cancel) {
+        return cancel(shell, study);
     }
     if (given.engine == "slurm") {
         return submit(shell, study, given);
     }
+    if (given.wait || given.run_study) {
+        throw core::UsageError("combination",
+                               std::string(given.wait ? "--wait" : "--run-study") +
+                                   " is for jobs of Slurm; a sweep on this machine ends when its cases are solved",
+                               {}, "add --engine slurm, or follow with: underbody study run " + given.study);
+    }
     cases::SweepOptions options;
-    options.jobs = given.jobs > 0 ? given.jobs : static_cast<int>(core::threads());
+    options.cores = given.cores.value_or(1);
+    options.retries = given.retries.value_or(0);
+    options.jobs = given.jobs > 0 ? given.jobs : std::max(1, static_cast<int>(core::threads()) / options.cores);
     options.stale = given.stale == "keep"      ? cases::StaleCases::keep
                     : given.stale == "replace" ? cases::StaleCases::replace
                                                : cases::StaleCases::redo;
@@ -289,8 +340,16 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
     command->add_option("--engine", o->engine, "local: OpenFOAM on this machine; slurm: a job array")
         ->check(CLI::IsMember({"local", "slurm"}))
         ->capture_default_str();
-    command->add_option("--jobs", o->jobs, "local: cases at a time, each on one core (default: all cores)")
+    command->add_option("--jobs", o->jobs, "local: cases at a time (default: all cores, over those of a case)")
         ->check(CLI::Range(1, 1024));
+    command
+        ->add_option("--cores", o->cores, "cores of a case, by MPI (default: [sweep.slurm] of study.toml for slurm, 1)")
+        ->check(CLI::Range(1, 4096));
+    command
+        ->add_option("--retries", o->retries,
+                     "how often a case is tried again whose solver was ended or failed; one that diverged is not "
+                     "(default: [sweep.slurm] for slurm, 0)")
+        ->check(CLI::Range(0, 100));
     command->add_option("--only", o->only, "local: this case alone, by name");
     command->add_option("--script", o->script,
                         "slurm: where the batch script goes (default: sweep.sh beside the cases)");
@@ -310,19 +369,31 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         ->add_option("--max-array", o->max_array,
                      "slurm: cases in one job array; more make several (default: what scontrol says, else 1000)")
         ->check(CLI::Range(1, 4000000));
+    command->add_flag("--run-study", o->run_study,
+                      "slurm: a job more, which runs the study when the arrays have ended");
+    command->add_flag(
+        "--wait", o->wait,
+        "slurm: waits until nothing waits or runs, then says how far each case is; exit code 3 when one is "
+        "missing");
+    command->add_flag("--cancel", o->cancel,
+                      "cancels the sweep's jobs in Slurm, and the one that would run the study; what they had begun "
+                      "stays");
     auto* add = command->add_option("--add", o->add,
                                     "SHAPE.toml: adds this shape to the study and its sweep, and says what its cases "
                                     "cost; solves nothing");
     command->add_option("--as", o->add_as, "with --add: its name (default: that of the file)")->needs(add);
     command->add_option("--submission", o->submission, "of the Slurm job whose task this is")->group("");
-    command->add_flag("--list", o->list,
-                      "only say how far each case is: missing, waiting, running, solved, stale, failed, present");
+    command->add_flag(
+        "--list", o->list,
+        "only say how far each case is: missing, waiting, running (iteration, time left at most), solved, "
+        "stale, failed (why), present");
     command->footer(
         "Examples:\n"
         "  underbody sweep mystudy --list\n"
         "  underbody sweep mystudy --add hull.toml --as hull-2\n"
         "  underbody sweep mystudy --jobs 2\n"
-        "  underbody sweep mystudy --engine slurm\n"
+        "  underbody sweep mystudy --engine slurm --run-study --wait\n"
+        "  underbody sweep mystudy --cancel\n"
         "In study.toml:\n"
         "  [sweep]\n"
         "  bodies = [\"ellipse\"]                 # names of [[body]]; default all\n"
@@ -334,7 +405,7 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         "  [sweep.slurm]                        # all optional\n"
         "  partition = \"cfd\"\n"
         "  time = \"02:00:00\"\n"
-        "  # memory, account, throttle, max_array, options = [\"--nice=100\"]\n"
+        "  # memory, account, throttle, max_array, cores, retries, run_study, options = [\"--nice=100\"]\n"
         "Solved cases belong to the study without a [[case]]. A sweep that was stopped goes on where it was, a solve "
         "from its last\n"
         "checkpoint. Two sweeps of one study never make the same case: the second leaves it alone.");

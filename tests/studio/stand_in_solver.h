@@ -34,6 +34,7 @@ while [ $i -lt $end ]; do
     i=$((i + 1))
     echo
     echo "Time = $i"
+    echo "ExecutionTime = $i.5 s  ClockTime = $i s"
     echo "$i (-1.5 0 2) (-1 0 2) (-0.5 0 0)" >> $f
     if [ $((i % every)) = 0 ]; then
         mkdir -p $i
@@ -56,6 +57,14 @@ inline void write_stand_in_solver(const std::filesystem::path& folder) {
     write_program(folder / "snappyHexMesh", "true");
     write_program(folder / "checkMesh", "echo 'Mesh OK.'; echo; echo End");
     write_program(folder / "simpleFoam", fake_solver);
+    // By MPI the solver runs in processor0, and `cores` has a line of how many were asked for.
+    write_program(folder / "decomposePar",
+                  "mkdir -p processor0 processor1 postProcessing\n"
+                  "for d in [1-9]*; do if [ -e \"$d/U\" ]; then cp -r \"$d\" processor0/; fi; done\n"
+                  "ln -sfn ../system processor0/system; ln -sfn ../postProcessing processor0/postProcessing");
+    write_program(folder / "mpirun", "echo \"$2\" >> cores\ncd processor0 && exec simpleFoam");
+    write_program(folder / "reconstructPar",
+                  "for d in processor0/[1-9]*; do if [ -e \"$d/U\" ]; then cp -r \"$d\" .; fi; done");
 }
 
 }  // namespace underbody::test

@@ -281,5 +281,98 @@ TEST_F(RealSlurm, MoreCasesThanTheSiteTakesInOneArrayMakeSeveral) {
     EXPECT_THAT(elsewhere.errors, HasSubstr("invalid partition"));
 }
 
+/// Cases as `sweep --list --json` has them.
+json listed(const std::string& output) { return json::parse(output).at("cases"); }
+
+TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
+    const std::string job = submit();
+    // Checkpoints are written every five iterations; the stand-in says that each takes a second.
+    ASSERT_TRUE(wait_for([&] {
+        const json cases = listed(run({"sweep", "study", "--list", "--json"}).output);
+        return std::all_of(cases.begin(), cases.end(), [](const json& one) { return one.at("iteration") >= 7; });
+    })) << json(states());
+    const json running = listed(run({"sweep", "study", "--list", "--json"}).output).at(0);
+    EXPECT_EQ(running.at("iterations"), 40);
+    EXPECT_EQ(running.at("seconds_left"), 40 - running.at("iteration").get<int>());
+    EXPECT_THAT(running.at("reason").get<std::string>(), HasSubstr(" s left"));
+    ASSERT_EQ(
+        slurm("sbatch", {"--partition=urgent", "--ntasks=2", "--output=/dev/null", "--wrap", "sleep 1"}).exit_code, 0);
+    EXPECT_TRUE(wait_for([&] { return count(states(), "waiting") == 2; })) << json(states());
+    hook("true");
+    // Slurm lets them wait for two minutes; what was killed has ended long before, here it is given three seconds.
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    for (const char* task : {"_1", "_2"}) {
+        ASSERT_EQ(slurm("scontrol", {"update", "JobId=" + job + task, "StartTime=now"}).exit_code, 0);
+    }
+    expect_all_solved(2);
+    for (const auto& [name, state] : states()) {
+        EXPECT_EQ(meshed(name), 1U) << name;
+        std::size_t starts = 0;
+        for (const auto& entry : fs::directory_iterator(runs() / name / "postProcessing" / "forces")) {
+            starts += entry.is_directory() ? 1 : 0;
+        }
+        EXPECT_EQ(starts, 2U) << name << " went on";
+    }
+}
+
+TEST_F(RealSlurm, AJobRunsTheStudyWhenTheArraysHaveEnded) {
+    hook("true");
+    const auto made = run({"sweep", "study", "--engine", "slurm", "--run-study", "--wait", "--json"});
+    ASSERT_EQ(made.exit_code, 0) << made.output << made.errors;
+    for (const auto& one : listed(made.output)) {
+        EXPECT_EQ(one.at("state"), "solved");
+    }
+    EXPECT_THAT(core::read_file(runs() / "sweep-study.sh"), HasSubstr(" study run "));
+    // Its output stands beside the cases.
+    const auto output = [&] {
+        std::string text;
+        for (const auto& entry : fs::directory_iterator(runs())) {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with("slurm-") && name.find('_') == std::string::npos) {
+                text += core::read_file(entry.path());
+            }
+        }
+        return text;
+    };
+    EXPECT_TRUE(wait_for([&] { return slurm("squeue", {"--noheader"}).output.empty(); }));
+    EXPECT_THAT(output(), HasSubstr("ellipse-h5-p1-u0.5")) << "the study ran, with the cases of the sweep";
+}
+
+TEST_F(RealSlurm, OneCaseAtATimeUntilAllIsCancelled) {
+    const auto submitted = run({"sweep", "study", "--engine", "slurm", "--run-study", "--throttle", "1", "--json"});
+    ASSERT_EQ(submitted.exit_code, 0) << submitted.errors;
+    const json told = json::parse(submitted.output);
+    EXPECT_THAT(slurm("squeue", {"--noheader", "--format", "%E", "--jobs", told.at("study").at("job")}).output,
+                HasSubstr("afterany:" + told.at("job").get<std::string>()));
+    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 1; })) << json(states());
+    EXPECT_EQ(count(states(), "waiting"), 1U);
+    const auto cancelled = run({"sweep", "study", "--cancel", "--json"});
+    ASSERT_EQ(cancelled.exit_code, 0) << cancelled.errors;
+    EXPECT_EQ(json::parse(cancelled.output).at("cancelled"), json::array({told.at("job")}));
+    EXPECT_TRUE(wait_for([&] { return slurm("squeue", {"--noheader"}).output.empty(); }))
+        << "the job that runs the study is cancelled too";
+    EXPECT_TRUE(wait_for([&] { return count(states(), "running") + count(states(), "waiting") == 0; }))
+        << json(states());
+    EXPECT_EQ(count(states(), "solved"), 0U);
+    EXPECT_THAT(run({"sweep", "study", "--cancel"}).output, HasSubstr("Slurm has no job of this sweep"));
+    hook("true");
+    submit();
+    expect_all_solved(2);
+}
+
+TEST_F(RealSlurm, CasesOnTwoCoresAreTriedAgainWhenTheirSolverIsKilled) {
+    const fs::path file = folder_.path() / "study" / "study.toml";
+    core::write_file(file, core::read_file(file) + "[sweep.slurm]\ncores = 2\nretries = 1\n");
+    hook("if [ $i = 17 ] && [ ! -e ../again ]; then touch ../again; kill -9 $$; fi");
+    const auto made = run({"sweep", "study", "--engine", "slurm", "--wait"});
+    ASSERT_EQ(made.exit_code, 0) << made.output << made.errors;
+    expect_all_solved(2);
+    EXPECT_THAT(core::read_file(runs() / "sweep.sh"), HasSubstr("#SBATCH --ntasks=2\n"));
+    for (const auto& [name, state] : states()) {
+        EXPECT_EQ(core::read_file(runs() / name / "cores"), "2\n2\n") << name;
+        EXPECT_EQ(meshed(name), 1U) << name;
+    }
+}
+
 }  // namespace
 }  // namespace underbody

@@ -33,7 +33,7 @@ protected:
     SolveCommands() {
         // Nothing of OpenFOAM or Slurm that this machine may have is on the path of these tests.
         for (const char* tool : {"sh", "sed", "mkdir", "touch", "printf", "cat", "sleep", "rm", "cp", "tail", "dirname",
-                                 "head", "mv", "date"}) {
+                                 "head", "mv", "date", "ln"}) {
             for (const char* where : {"/usr/bin", "/bin"}) {
                 if (fs::exists(fs::path(where) / tool) && !fs::exists(folder_.path() / "tools" / tool)) {
                     fs::create_directories(folder_.path() / "tools");
@@ -231,6 +231,48 @@ TEST_F(SolveCommands, SweepWritesAndSubmitsAJobArray) {
     EXPECT_EQ(refused.exit_code, 3);
     EXPECT_THAT(refused.errors, HasSubstr("invalid partition"));
     EXPECT_FALSE(fs::exists(runs() / "ellipse-h5-p1-u0.5.submitted"));
+}
+
+TEST_F(SolveCommands, ACaseOnSeveralCoresIsTriedAgainFromItsCheckpoint) {
+    write_study();
+    // Killed once at iteration 17 in each case, on two cores: what was decomposed is put together, and it goes on.
+    hook("if [ $i = 17 ] && [ ! -e ../again ]; then touch ../again; kill -9 $$; fi");
+    const auto made = run({"sweep", "study", "--jobs", "1", "--cores", "2", "--retries", "1", "--json"});
+    ASSERT_EQ(made.exit_code, 0) << made.output << made.errors;
+    const json told = json::parse(made.output);
+    ASSERT_FALSE(told["cases"].empty());
+    for (const auto& one : told["cases"]) {
+        const fs::path folder = runs() / one["name"].get<std::string>();
+        EXPECT_THAT(one["note"].get<std::string>(), HasSubstr("tried again (1 of 1): "));
+        EXPECT_EQ(core::read_file(folder / "cores"), "2\n2\n");
+        EXPECT_TRUE(fs::exists(folder / "40" / "U"));
+        EXPECT_FALSE(fs::exists(folder / "processor0"));
+        EXPECT_EQ(core::read_file(folder / "meshed"), "meshed\n");
+        // Iterations 1 to 17, then 16 to 40.
+        EXPECT_TRUE(fs::exists(folder / "postProcessing" / "forces" / "15")) << "it went on from the checkpoint";
+    }
+    for (const auto& [name, one] : list().items()) {
+        EXPECT_EQ(one["state"], "solved") << name;
+    }
+}
+
+TEST_F(SolveCommands, ACaseIsTriedAgainAsOftenAsAsked) {
+    write_study();
+    hook("echo x >> ../../attempts; exit 1");
+    const auto made = run({"sweep", "study", "--jobs", "1", "--retries", "2", "--only", "ellipse-h5-p1-u0.5"});
+    EXPECT_EQ(made.exit_code, 3);
+    EXPECT_EQ(core::read_file(folder_.path() / "study" / "attempts"), "x\nx\nx\n");
+    EXPECT_EQ(list()["ellipse-h5-p1-u0.5"]["state"], "failed");
+}
+
+TEST_F(SolveCommands, OnSeveralCoresTheProgramsOfMpiAreNeeded) {
+    write_study();
+    fs::remove(folder_.path() / "bin" / "mpirun");
+    const auto made = run({"sweep", "study", "--cores", "2"});
+    EXPECT_NE(made.exit_code, 0);
+    EXPECT_THAT(made.output + made.errors, HasSubstr("needs 'mpirun', which is not on the PATH"));
+    EXPECT_THAT(run({"sweep", "study", "--wait"}).errors, HasSubstr("is for jobs of Slurm"));
+    EXPECT_THAT(run({"sweep", "study", "--cancel"}).errors, HasSubstr("there is no 'scancel'"));
 }
 
 TEST_F(SolveCommands, WhatWaitsOrRunsInSlurmIsMadeByNobodyElse) {

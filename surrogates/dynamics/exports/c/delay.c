@@ -49,8 +49,9 @@ static double on_line(const command_history *past, size_t which, double s, doubl
     return p[0].u + *slope * (s - p[0].t);
 }
 
-/* The command u of the time t; what was kept of later times belongs to a step that is taken again. 0: no memory. */
-static int remember(command_history *past, double t, double u) {
+/* The command u of the time t; what was kept of later times belongs to a step that is taken again. What was felt before `now`
+   is forgotten. 0: no memory. */
+static int remember(command_history *past, double now, double t, double u) {
     size_t old, n = points_until(past, t + same_time(t));
     if (n > 0 && n < past->count) {
         double slope;
@@ -60,7 +61,7 @@ static int remember(command_history *past, double t, double u) {
     } else {
         past->count = n;
     }
-    old = points_until(past, t - DELAY - same_time(t));
+    old = points_until(past, now - DELAY - same_time(t));
     if (old > 2 && old > past->count / 2) {
         memmove(past->at, past->at + old - 2, (past->count - old + 2) * sizeof(command_point));
         past->count -= old - 2;

@@ -75,7 +75,7 @@ static void moment_of(const Instance *c, const double *x, double later, moment *
 
 /* Keeps the command of this moment; 0: no memory. */
 static int keep_command(Instance *c, double later) {
-    return !DELAYED || remember(&c->past, c->t + later, c->u[0] + later * c->slope[0]);
+    return !DELAYED || remember(&c->past, c->t, c->t + later, c->u[0] + later * c->slope[0]);
 }
 
 /* The ground at this moment; 1 when states changed, -1 when nothing fits. */
