@@ -251,7 +251,8 @@ TEST_F(SolveCommands, ACaseOnSeveralCoresIsTriedAgainFromItsCheckpoint) {
         // Iterations 1 to 17, then 16 to 40.
         EXPECT_TRUE(fs::exists(folder / "postProcessing" / "forces" / "15")) << "it went on from the checkpoint";
     }
-    for (const auto& [name, one] : list().items()) {
+    const json all = list();
+    for (const auto& [name, one] : all.items()) {
         EXPECT_EQ(one["state"], "solved") << name;
     }
 }
