@@ -17,7 +17,7 @@ solver() {
     printf 'FoamFile\n{\n    version 2.0;\n    format ascii;\n    class dictionary;\n    object decomposeParDict;\n}\n%s\n' \
         "numberOfSubdomains $cores; method simple; coeffs { n ($cores 1 1); }" > "$1/system/decomposeParDict"
     decomposePar -case "$1" -latestTime -force > log.decomposePar 2>&1 || failed decomposePar $?
-    mpirun -np "$cores" --bind-to none simpleFoam -parallel -case "$1" >> "log.$2" 2>&1 || failed "$2" $?
+    OMPI_MCA_hwloc_base_binding_policy=none mpirun -np "$cores" simpleFoam -parallel -case "$1" >> "log.$2" 2>&1 || failed "$2" $?
     reconstructPar -case "$1" -latestTime > log.reconstructPar 2>&1 || failed reconstructPar $?
     rm -rf "$1"/processor*
 }
