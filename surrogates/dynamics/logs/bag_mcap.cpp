@@ -148,7 +148,8 @@ private:
     }
 
     static std::string bytes_left(std::size_t count) {
-        return "its last " + std::to_string(count) + (count == 1 ? " byte was left" : " bytes were left");
+        return count == 0 ? "what came behind it is missing"
+                          : "its last " + std::to_string(count) + (count == 1 ? " byte was left" : " bytes were left");
     }
 
     void cut(const std::string& how, const std::string& left) {

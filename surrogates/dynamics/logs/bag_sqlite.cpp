@@ -77,6 +77,15 @@ LogEnd read_sqlite_bag(const std::filesystem::path& path, LogSink& sink, core::P
                                     core::format_number(topics.last(), 6) + " s of the log",
                                 core::Place{name, {}, {}, {}}});
     }
+    // A recorder that was killed leaves its last messages in a file beside the bag, which is not touched here.
+    const std::string beside = name + "-wal";
+    std::error_code none;
+    if (const auto size = std::filesystem::file_size(beside, none); !none && size > 0) {
+        end.problems.push_back(
+            {core::Problem::Severity::warning,
+             "the messages that the recorder left in " + beside + " (" + std::to_string(size) + " bytes) were not read",
+             core::Place{name, {}, {}, {}}});
+    }
     topics.finish(end);
     return end;
 }

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -249,6 +252,59 @@ TEST(Logs, ACutLogGivesWhatStandsBeforeTheCut) {
     ASSERT_EQ(half.problems.size(), 1u);
     EXPECT_THAT(half.problems[0].message, HasSubstr("bytes were left"));
     EXPECT_THAT(end.problems[0].message, HasSubstr("s of the log"));
+}
+
+/// Either everything is there, or it is said (or refused) that it is not.
+void expect_said_or_whole(const std::function<LogEnd(Kept&)>& read, std::size_t rows, const std::string& where) {
+    Kept kept;
+    try {
+        const LogEnd end = read(kept);
+        EXPECT_TRUE(kept.rows() == rows || !end.problems.empty()) << where << ": " << kept.rows() << " of " << rows;
+    } catch (const core::InputError& error) {
+        EXPECT_FALSE(error.message().empty()) << where;
+    }
+}
+
+TEST(Logs, AnMcapBagThatEndsBetweenTwoRecordsSaysSo) {
+    const std::string bag = test::mcap_bytes(two_sensors(true), "");
+    std::size_t ends = 0;
+    std::uint64_t length = 0;
+    for (std::size_t at = 8; at + 9 <= bag.size() && bag[at] != 0x02 && bag[at] != 0x0f; at += 9 + length) {
+        std::memcpy(&length, bag.data() + at + 1, sizeof length);
+        expect_said_or_whole([&](Kept& kept) { return read_bytes(bag.substr(0, at), kept); }, SIZE_MAX,
+                             "cut at byte " + std::to_string(at));
+        ++ends;
+    }
+    EXPECT_GT(ends, 3u);
+    // The end of data is the last record that counts.
+    Kept kept;
+    EXPECT_TRUE(read_bytes(bag, kept).problems.empty());
+}
+
+TEST(Logs, ASqliteBagThatEndsBetweenTwoPagesSaysSo) {
+    const core::TemporaryFolder folder;
+    const auto file = folder.path() / "b.db3";
+    test::write_sqlite_bag(file, two_sensors(true));
+    const std::string bytes = core::read_file(file);
+    const std::size_t page = 256 * static_cast<unsigned char>(bytes[16]) + static_cast<unsigned char>(bytes[17]);
+    ASSERT_GT(bytes.size() / page, 5u);
+    for (std::size_t size = page; size < bytes.size(); size += page) {
+        core::write_file(folder.path() / "cut.db3", bytes.substr(0, size));
+        expect_said_or_whole([&](Kept& kept) { return dynamics::read_log(folder.path() / "cut.db3", kept); }, 400,
+                             "cut at byte " + std::to_string(size));
+    }
+}
+
+TEST(Logs, MessagesThatAKilledRecorderLeftBesideABagAreMissed) {
+    const core::TemporaryFolder folder;
+    const auto file = folder.path() / "b.db3";
+    test::write_sqlite_bag(file, two_sensors(true));
+    core::write_file(folder.path() / "b.db3-wal", std::string(4152, 'x'));
+    Kept kept;
+    const LogEnd end = dynamics::read_log(file, kept);
+    ASSERT_EQ(end.problems.size(), 1u);
+    EXPECT_THAT(end.problems[0].message, HasSubstr("b.db3-wal (4152 bytes) were not read"));
+    EXPECT_EQ(kept.rows(), 400u);
 }
 
 TEST(Logs, FlippedBytesNeverEndBadlyAndLoseLittle) {
