@@ -5,6 +5,13 @@
 
 namespace underbody::cases {
 
+postproc::ReadOptions read_options(const Case& entry) {
+    postproc::ReadOptions options;
+    options.length_unit = entry.length_unit;
+    options.units = entry.units;
+    return options;
+}
+
 postproc::LoadsOptions loads_options(const Study& study, const Case& entry) {
     postproc::LoadsOptions options;
     options.zones = entry.zones;

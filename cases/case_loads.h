@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cases/study.h"
+#include "postproc/field/field.h"
 #include "postproc/loads/loads.h"
 
 namespace underbody::cases {
@@ -12,6 +13,9 @@ namespace underbody::cases {
 /// Zones, axes, symmetry, reference and coefficients as the study says for this case.
 /// Throws core::UsageError: axes that are none.
 postproc::LoadsOptions loads_options(const Study& study, const Case& entry);
+
+/// How the file of a case is read: with the units that the study says for it.
+postproc::ReadOptions read_options(const Case& entry);
 
 /// One standard deviation (SI) of a quantity of each case of which one is known, by the case's name: what the
 /// [[table]]s of that quantity give their points (mesh study, stated relative error, scatter), the largest where

@@ -53,6 +53,15 @@ Key& Key::through(const std::string& kind, const std::string& name) {
     return *this;
 }
 
+void add_units(Key& key, const Case& entry) {
+    if (!entry.length_unit.empty()) {
+        key.add("length_unit", entry.length_unit);
+    }
+    for (const auto& [variable, unit] : entry.units) {
+        key.add("unit of " + variable, unit);
+    }
+}
+
 std::string Key::digest() const {
     if (!digest_.empty()) {
         return digest_;

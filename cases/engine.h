@@ -58,6 +58,9 @@ private:
     std::string digest_;  ///< of a closed key
 };
 
+/// The units that the study says for a case's file; of one without any the key stays what it was.
+void add_units(Key& key, const Case& entry);
+
 /// What a piece of work gives.
 struct Value {
     std::string bytes;

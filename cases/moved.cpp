@@ -15,7 +15,7 @@ constexpr double beyond_sigmas = 2;
 constexpr double rounding = 1e-9;  ///< of the size
 const double unknown = std::nan("");
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(); }
+json json_number(double value) { return std::isfinite(value) ? json(value) : json(); }
 
 }  // namespace
 
@@ -75,14 +75,14 @@ bool moved_more(const Moved& a, const Moved& b) {
 void to_json(json& all, const Moved& one) {
     all = {{"name", one.name},
            {"unit", one.unit},
-           {"a", number(one.a)},
-           {"b", number(one.b)},
-           {"difference", number(one.difference())},
-           {"sigma_a", number(one.sigma_a)},
-           {"sigma_b", number(one.sigma_b)},
-           {"sigma", number(one.sigma())},
-           {"in_sigma", number(one.in_sigma())},
-           {"of_size", number(one.of_size())},
+           {"a", json_number(one.a)},
+           {"b", json_number(one.b)},
+           {"difference", json_number(one.difference())},
+           {"sigma_a", json_number(one.sigma_a)},
+           {"sigma_b", json_number(one.sigma_b)},
+           {"sigma", json_number(one.sigma())},
+           {"in_sigma", json_number(one.in_sigma())},
+           {"of_size", json_number(one.of_size())},
            {"shift", to_string(one.shift)}};
 }
 

@@ -39,6 +39,7 @@ Key loads_key(const Study& study, const Case& entry) {
     for (const auto& zone : entry.zones) {
         key.add("zone", zone);
     }
+    add_units(key, entry);
     key.close();
     return key;
 }
@@ -47,10 +48,14 @@ Key loads_key(const Study& study, const Case& entry) {
 class LoadsKeys {
 public:
     explicit LoadsKeys(const Study& study) {
-        std::map<std::tuple<std::optional<double>, std::optional<double>, std::vector<std::string>>, std::size_t> known;
+        using Units = std::vector<std::pair<std::string, std::string>>;
+        std::map<std::tuple<std::optional<double>, std::optional<double>, std::vector<std::string>, std::string, Units>,
+                 std::size_t>
+            known;
         for (const auto& entry : study.cases) {
-            const auto [at, fresh] = known.try_emplace(
-                {study.speed_of(entry), entry.conditions.number("density"), entry.zones}, keys_.size());
+            const auto [at, fresh] = known.try_emplace({study.speed_of(entry), entry.conditions.number("density"),
+                                                        entry.zones, entry.length_unit, entry.units},
+                                                       keys_.size());
             if (fresh) {
                 keys_.push_back(loads_key(study, entry));
             }
@@ -121,7 +126,7 @@ void take_brief(std::string_view text, CaseLoads& loads) {
 }
 
 Value compute_loads(Engine& engine, const Case& entry) {
-    postproc::ReadOptions reading;
+    postproc::ReadOptions reading = read_options(entry);
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
     const postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);

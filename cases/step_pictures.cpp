@@ -1,6 +1,7 @@
 // Pictures of the flow on the surface of chosen cases.
 #include <nlohmann/json.hpp>
 
+#include "cases/case_loads.h"
 #include "cases/engine.h"
 #include "postproc/field/field.h"
 #include "postproc/field/kinematic.h"
@@ -35,6 +36,7 @@ Key picture_key(const std::string& kind, const Engine& engine, const PictureSpec
     for (const auto& zone : entry.zones) {
         key.add("zone", zone);
     }
+    add_units(key, entry);
     if (spec.range) {
         key.add("range", spec.range->first).add("range", spec.range->second);
     }
@@ -56,7 +58,7 @@ std::vector<std::string> views_of(Engine& engine, const PictureSpec& spec, const
 
 void draw_case(Engine& engine, const PictureSpec& spec, const Case& entry) {
     Shared<postproc::Field> field(engine.states(), [&] {
-        auto read = postproc::read_field(entry.file, {}, engine.progress);
+        auto read = postproc::read_field(entry.file, read_options(entry), engine.progress);
         (void)postproc::bring_to_pascal(read, engine.study.density_of(entry));
         return read;
     });

@@ -175,12 +175,33 @@ std::map<std::string, std::string> units_of(const std::string& pattern, const To
     return units;
 }
 
+/// A unit under a key; empty: none. Throws core::InputError for what is none.
+std::string unit_of_file(const TomlTable& table, const std::string& key, const char* of = nullptr) {
+    const std::string unit = table.string_or(key, "");
+    if (!unit.empty() && !(core::is_unit(unit) && (of == nullptr || core::same_dimension(unit, of)))) {
+        throw core::InputError("unit", table.path_of(key) + ": '" + unit + "' is no unit" + (of ? " of a length" : ""),
+                               table.place(key), of ? "mm, m, inch ..." : "Pa, m/s, ...");
+    }
+    return unit;
+}
+
+std::vector<std::pair<std::string, std::string>> units_of_variables(const TomlTable& table) {
+    const TomlTable said = table.table_or_empty("units");
+    std::vector<std::pair<std::string, std::string>> units;
+    for (const auto& variable : said.keys()) {
+        units.emplace_back(variable, unit_of_file(said, variable));
+    }
+    return units;
+}
+
 void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::string, std::string>& files,
                std::map<std::string, std::string>& own_units) {
     const std::string pattern = table.string("files");
     const Conditions held = read_where(table, "conditions");
     const std::vector<std::string> zones = table.strings("zones");
     const bool mean = table.boolean_or("mean", false);
+    const auto length_unit = unit_of_file(table, "length_unit", "m");
+    const auto file_units = units_of_variables(table);
     DesignPointCases design(table);
     auto found = find_cases(pattern, study.folder(), table);
     const auto units = units_of(pattern, table, own_units);
@@ -190,6 +211,8 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         entry.name = short_name(below(entry.file, study.folder()), item.folder);
         entry.conditions = held;
         entry.zones = zones;
+        entry.length_unit = length_unit;
+        entry.units = file_units;
         for (auto& number : item.match.numbers) {
             entry.conditions.set(number.first, number.second, units.at(number.first));
         }

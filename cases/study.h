@@ -70,6 +70,9 @@ struct Case {
     std::filesystem::path file;  ///< or the folder of an OpenFOAM case
     Conditions conditions;
     std::vector<std::string> zones;  ///< patterns of the zones that are the body; empty: all walls
+    /// What the file does not say, by whoever knows: unit of its coordinates, and of variables by their name there.
+    std::string length_unit;
+    std::vector<std::pair<std::string, std::string>> units;
     bool mean = false;  ///< one instant of a run in time: the files that differ in their time alone count as their mean
 };
 

@@ -452,8 +452,12 @@ std::vector<Case> solved_cases(const Study& study, core::Problems& notes) {
                 continue;
             }
         }
-        cases.push_back({wanted.name, wanted.folder / solved_marker, wanted.conditions,
-                         marker["walls"].get<std::vector<std::string>>()});
+        Case solved;
+        solved.name = wanted.name;
+        solved.file = wanted.folder / solved_marker;
+        solved.conditions = wanted.conditions;
+        solved.zones = marker["walls"].get<std::vector<std::string>>();
+        cases.push_back(std::move(solved));
     }
     if (!stale.empty()) {
         notes.push_back(

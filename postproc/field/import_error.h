@@ -22,4 +22,22 @@ private:
     std::string understood_;
 };
 
+/// A file that does not say in which unit something is that the loads rest on: whoever knows it can say it
+/// (ReadOptions::length_unit, ReadOptions::units).
+class UnitMissing : public core::InputError {
+public:
+    /// `variable`: as the file names it, empty for the coordinates; `unit`: an SI unit of its kind.
+    UnitMissing(const std::string& message, core::Place place, const std::string& hint, std::string variable,
+                std::string unit)
+        : core::InputError("unit", message, std::move(place), hint),
+          variable_(std::move(variable)),
+          unit_(std::move(unit)) {}
+
+    [[nodiscard]] const std::string& variable() const { return variable_; }
+    [[nodiscard]] const std::string& unit() const { return unit_; }
+
+private:
+    std::string variable_, unit_;
+};
+
 }  // namespace underbody::postproc

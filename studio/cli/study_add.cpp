@@ -3,30 +3,24 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/file.h"
-#include "core/name_pattern.h"
-#include "core/own_files.h"
+#include "cases/add_cases.h"
 #include "core/text.h"
-#include "core/toml.h"
 #include "studio/cli/study_parts.h"
 
 namespace underbody::studio {
 
 namespace {
 
-/// Files that the pattern passes over though they look as if they were meant, each with the reason.
-nlohmann::json left_out(const StudyArguments& arguments, Shell& shell) {
+nlohmann::json show_left_out(const cases::AddedCases& added, Shell& shell) {
     constexpr std::size_t most = 8;
-    const core::NamePattern pattern(arguments.files);
-    const auto missed = pattern.near_misses(arguments.folder);
+    const auto& missed = added.left_out;
     nlohmann::json list = nlohmann::json::array();
     std::string text = missed.empty() ? ""
                                       : std::to_string(missed.size()) +
                                             (missed.size() == 1 ? " file is" : " files are") + " left out:";
     for (std::size_t i = 0; i < missed.size(); ++i) {
-        const std::string why = pattern.why_not(missed[i], arguments.folder);
-        list.push_back({{"file", missed[i].string()}, {"why", why}});
-        text += i < most ? "\n  " + missed[i].string() + ": " + why : "";
+        list.push_back({{"file", missed[i].first.string()}, {"why", missed[i].second}});
+        text += i < most ? "\n  " + missed[i].first.string() + ": " + missed[i].second : "";
     }
     text += missed.size() > most ? "\n  and " + std::to_string(missed.size() - most) + " more" : "";
     if (!missed.empty()) {
@@ -35,131 +29,52 @@ nlohmann::json left_out(const StudyArguments& arguments, Shell& shell) {
     return list;
 }
 
-/// The text with `symmetry` under [frame]. Throws core::UsageError when it says another plane already.
-std::string with_symmetry(std::string text, const std::string& symmetry, const cases::Study* before) {
-    if (symmetry.empty() || (before != nullptr && before->symmetry == symmetry)) {
-        return text;
+/// "NAME=VALUE" of an option in two.
+std::pair<std::string, std::string> in_two(const std::string& text, const char* form, const char* hint) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos) {
+        throw core::UsageError("parse", "'" + text + "' is not of the form " + form, {}, hint);
     }
-    if (before != nullptr && !before->symmetry.empty()) {
-        throw core::UsageError("range",
-                               "the study's half models have their plane across " + before->symmetry + " already", {},
-                               "all cases of a study have one; a study of its own for the others");
-    }
-    if (before != nullptr && !before->cases.empty()) {
-        throw core::UsageError("range",
-                               "the cases that the study has already are whole bodies: with a symmetry plane they "
-                               "would be taken for halves",
-                               {},
-                               "a study of its own for the half models, or symmetry = " + core::toml_string(symmetry) +
-                                   " under [frame] by hand");
-    }
-    const std::string line = "symmetry = " + core::toml_string(symmetry) + "\n";
-    const std::size_t frame = ("\n" + text).find("\n[frame]");
-    if (frame == std::string::npos) {
-        return text + "\n[frame]\n" + line;
-    }
-    const std::size_t end = text.find('\n', frame);
-    return end == std::string::npos ? text + "\n" + line : text.insert(end + 1, line);
+    return {std::string(core::trimmed(std::string_view(text).substr(0, equal))),
+            std::string(core::trimmed(std::string_view(text).substr(equal + 1)))};
 }
 
-/// The lines of a [[case]] whose conditions stand in a table of design points.
-std::string design_points_of(const StudyArguments& arguments) {
-    if (arguments.design_points.empty() && arguments.parameters.empty()) {
-        return {};
+cases::NewCases new_cases(const StudyArguments& arguments) {
+    cases::NewCases cases;
+    cases.files = arguments.files;
+    cases.zones = arguments.zones;
+    cases.symmetry = arguments.symmetry;
+    cases.length_unit = arguments.length_unit;
+    cases.design_points = arguments.design_points;
+    for (const auto& condition : arguments.conditions) {
+        cases.conditions.push_back(in_two(condition, "name=value", "--condition speed=0.5m/s"));
     }
-    if (arguments.design_points.empty()) {
+    for (const auto& unit : arguments.units) {
+        cases.units.push_back(in_two(unit, "NAME=UNIT", "--unit Pressure=Pa"));
+    }
+    if (arguments.design_points.empty() && !arguments.parameters.empty()) {
         throw core::UsageError("usage", "--parameter belongs to --design-points", {},
                                "--design-points points.csv --parameter P1=gap");
     }
-    const std::filesystem::path table =
-        std::filesystem::absolute(arguments.design_points)
-            .lexically_relative(std::filesystem::absolute(arguments.folder).lexically_normal());
-    std::string text = "design_points = " + core::toml_string(table.string()) + "\n";
     for (const auto& parameter : arguments.parameters) {
-        const std::size_t equal = parameter.find('=');
-        if (equal == std::string::npos) {
-            throw core::UsageError("parse", "'" + parameter + "' is not of the form PARAMETER=quantity", {},
-                                   "--parameter \"P1=gap [mm]\", or --parameter P2= for none");
-        }
-        text += "parameters." + core::toml_string(core::trimmed(std::string_view(parameter).substr(0, equal))) + " = " +
-                core::toml_string(core::trimmed(std::string_view(parameter).substr(equal + 1))) + "\n";
+        cases.parameters.push_back(
+            in_two(parameter, "PARAMETER=quantity", "--parameter \"P1=gap [mm]\", or --parameter P2= for none"));
     }
-    return text;
-}
-
-std::string case_text(const StudyArguments& arguments) {
-    std::string text = "\n[[case]]\nfiles = " + core::toml_string(arguments.files) + "\n";
-    std::string zones;
-    for (const auto& zone : arguments.zones) {
-        zones += (zones.empty() ? "" : ", ") + core::toml_string(zone);
-    }
-    text += zones.empty() ? "" : "zones = [" + zones + "]\n";
-    for (const auto& condition : arguments.conditions) {
-        const std::size_t equal = condition.find('=');
-        if (equal == std::string::npos) {
-            throw core::UsageError("parse", "'" + condition + "' is not of the form name=value", {},
-                                   "--condition speed=0.5m/s");
-        }
-        text +=
-            "conditions." + condition.substr(0, equal) + " = " + core::toml_string(condition.substr(equal + 1)) + "\n";
-    }
-    return text + design_points_of(arguments);
-}
-
-/// What is wrong stands in the lines to be added, which nobody has seen yet: says it without their place.
-void say_of_new_lines(const core::InputError& error, const StudyArguments& arguments, const std::filesystem::path& file,
-                      std::ptrdiff_t old_lines) {
-    if (error.place().file != file.string() || error.place().line.value_or(0) <= old_lines) {
-        return;
-    }
-    std::string hint = error.hint();
-    if (error.kind() == "missing") {
-        const core::NamePattern pattern(arguments.files);
-        if (const auto missed = pattern.near_misses(arguments.folder); !missed.empty()) {
-            hint = std::to_string(missed.size()) + " come near, such as " + missed.front().string() + ": " +
-                   pattern.why_not(missed.front(), arguments.folder);
-        }
-    }
-    const std::string message = error.message() + "; nothing was added to " + file.string();
-    if (error.kind() == "missing" || error.kind() == "duplicate") {
-        throw core::InputError(error.kind(), message, {}, hint);
-    }
-    throw core::UsageError(error.kind(), message, {}, hint);
+    return cases;
 }
 
 /// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
 int add(Shell& shell, const StudyArguments& arguments) {
-    const std::filesystem::path folder = arguments.folder;
-    const std::filesystem::path file = folder / "study.toml";
-    std::optional<cases::Study> before;
-    std::string text =
-        "title = " +
-        core::toml_string(
-            std::filesystem::absolute(folder / ".").lexically_normal().parent_path().filename().string()) +
-        "\n";
-    if (std::filesystem::exists(file)) {
-        text = core::read_file(file);
-        before = cases::Study::from_text(text, file);
-    }
-    const auto old_lines = std::count(text.begin(), text.end(), '\n');
-    text = with_symmetry(std::move(text), arguments.symmetry, before ? &*before : nullptr) + case_text(arguments);
-    std::size_t count = 0;
-    nlohmann::json notes = nlohmann::json::array();
-    try {
-        const auto after = cases::Study::from_text(text, file);
-        count = after.cases.size() - (before ? before->cases.size() : 0);
-        show_notes(shell, after);
-        notes = json_of_notes(after, {});
-    } catch (const core::InputError& error) {
-        say_of_new_lines(error, arguments, file, old_lines);
-        throw;
-    }
-    const core::ReplacingAllowed of_the_user;  // who asked for it
-    core::write_file(file, text);
-    const nlohmann::json passed_over = left_out(arguments, shell);
-    shell.print(std::to_string(count) + " cases added to " + file.string());
+    const auto added = cases::with_new_cases(arguments.folder, new_cases(arguments));
+    show_notes(shell, added.study);
+    cases::write_added(added);
+    const nlohmann::json passed_over = show_left_out(added, shell);
+    shell.print(std::to_string(added.count) + " cases added to " + added.file.string());
     if (shell.json) {
-        shell.print_json({{"added", count}, {"study", file.string()}, {"left_out", passed_over}, {"notes", notes}});
+        shell.print_json({{"added", added.count},
+                          {"study", added.file.string()},
+                          {"left_out", passed_over},
+                          {"notes", json_of_notes(added.study, {})}});
     }
     return done;
 }
@@ -177,6 +92,10 @@ void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
         ->add_option("--zones", arguments->zones,
                      "zones that are the body: names, * and ? allowed; several with commas in one word")
         ->delimiter(',');
+    command->add_option("--length-unit", arguments->length_unit,
+                        "unit of coordinates that the files do not say (mm, inch ...)");
+    command->add_option("--unit", arguments->units,
+                        "unit of a variable that the files do not say: \"Pressure=Pa\" (repeatable)");
     command->add_option("--design-points", arguments->design_points,
                         "Workbench's table of design points (CSV): the conditions of the files; {design_point} in "
                         "--files is the number behind dp");

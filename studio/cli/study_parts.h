@@ -19,6 +19,8 @@ struct StudyArguments {
     std::string files;
     std::vector<std::string> conditions;
     std::string symmetry;
+    std::string length_unit;
+    std::vector<std::string> units;
     std::string design_points;
     std::vector<std::string> parameters;
     std::string what;

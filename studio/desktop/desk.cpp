@@ -123,15 +123,23 @@ void Desk::follow_state() {
                 });
 }
 
-void Desk::open_study(const fs::path& folder) {
+void Desk::open_study(const fs::path& folder) { open(folder, false); }
+
+void Desk::open_and_run(const fs::path& folder) { open(folder, true); }
+
+void Desk::open(const fs::path& folder, bool run) {
     const QString name = qt(folder.string());
-    jobs_.start("open", "opening " + name, [this, folder, name, files = state().files](core::Progress&) {
+    jobs_.start("open", "opening " + name, [this, folder, name, run, files = state().files](core::Progress&) {
         auto session = open_session(folder, files);
-        return [this, session, name] {
+        return [this, session, name, run] {
             take_session(session);
-            act({"open", session->folder.string()});
+            if (!run || state().study != session->folder.string()) {  // what the open one shows is kept
+                act({"open", session->folder.string()});
+            }
             Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
-            if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
+            if (run) {
+                run_study();
+            } else if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
                 Q_EMIT noted(session->results.changed > 0
                                  ? "What was computed of this study rests on other files, options or another version "
                                    "of the program: Study > Compute what changed (Ctrl+R) makes it anew."

@@ -38,6 +38,8 @@ public:
 
     /// Opens a study in a job, then acts.
     void open_study(const std::filesystem::path& folder);
+    /// The same, then computes it.
+    void open_and_run(const std::filesystem::path& folder);
     /// Reads the study and its store again. While it is computed: at the end of that.
     void reload();
     /// Computes what changed; what is stored is shown as it comes, also of a run that is cancelled or fails.
@@ -60,6 +62,7 @@ Q_SIGNALS:
     void acted(const QString& line, const QString& command);
 
 private:
+    void open(const std::filesystem::path& folder, bool run);
     void take_session(const SessionPointer& session);
     /// Gets the session that the state names.
     void follow_state();

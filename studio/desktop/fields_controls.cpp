@@ -11,6 +11,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "postproc/field/lists.h"
 #include "postproc/loads/body_zones.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/qt_text.h"
@@ -34,6 +35,26 @@ bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std
 void FieldsPanel::build_controls(QWidget& side) {
     auto* left = new QVBoxLayout(&side);
     left->setContentsMargins(0, 0, 0, 0);
+    auto* show = new QLabel("Sho&w");
+    left->addWidget(show);
+    view_ = new QComboBox;
+    view_->setAccessibleName("Show");
+    show->setBuddy(view_);
+    view_->addItem("surface, in 3D", "surface");
+    for (const auto& kind : postproc::view_kinds()) {
+        view_->addItem(qt(kind.name).replace('-', ", "), qt(kind.name));
+        view_->setItemData(view_->count() - 1, qt(kind.meaning), Qt::ToolTipRole);
+    }
+    view_->setToolTip(
+        "The surface to turn by hand, or a picture of the flow: planes and streamlines need a file with its volume");
+    view_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    left->addWidget(view_);
+    time_ = new QLineEdit;
+    time_->setAccessibleName("Time");
+    time_->setToolTip("Of files with several times (OpenFOAM, EnSight, CGNS): the one that is shown");
+    time_->setClearButtonEnabled(true);
+    left->addWidget(time_);
+    time_->hide();
     auto* colour = new QLabel("&Colour by");
     left->addWidget(colour);
     array_ = new QComboBox;
@@ -66,6 +87,7 @@ void FieldsPanel::build_controls(QWidget& side) {
     zones_ = new QListWidget;
     zones_->setAccessibleName("Zones");
     zones_->setToolTip("Ticked zones are drawn, and set the range of the colours");
+    zones_->setMinimumHeight(60);
     left->addWidget(zones_, 1);
     auto* views = new QGridLayout;
     const std::vector<std::tuple<QString, std::string, QString>> buttons = {{"Underbody", "bottom", "U"},
@@ -92,6 +114,19 @@ void FieldsPanel::build_controls(QWidget& side) {
         connect(shortcut, &QShortcut::activated, this, act);
     }
     left->addLayout(views);
+    units_ = new QPushButton("Units, &half model …");
+    units_->setToolTip("What a file from outside the study does not say: units, half or whole, zones of the body");
+    left->addWidget(units_);
+    connect(units_, &QPushButton::clicked, this, &FieldsPanel::ask_units);
+    connect(view_, QOverload<int>::of(&QComboBox::activated), this, [this] {
+        desk_.act({"fields", "view=" + view_->currentData().toString().toStdString()});
+    });
+    connect(time_, &QLineEdit::editingFinished, this, [this] {
+        if (time_->isModified()) {
+            time_->setModified(false);
+            desk_.act({"fields", "time=" + time_->text().trimmed().toStdString()});
+        }
+    });
     const auto on_off = [this](const char* key, bool on) {
         desk_.act({"fields", std::string(key) + (on ? "=on" : "=off")});
     };
@@ -159,12 +194,35 @@ void FieldsPanel::fill_controls() {
     whole_range_->setChecked(state().fields.whole_range);
     edges_->setChecked(state().fields.edges);
     difference_->setChecked(state().fields.difference);
-    mirror_->setEnabled(!session().study.symmetry.empty());
-    mirror_->setChecked(state().fields.mirror.value_or(true) && !session().study.symmetry.empty());
+    const bool halves = std::any_of(cells_.begin(), cells_.end(),
+                                    [](const auto& cell) { return cell->ready && !cell->source.symmetry.empty(); });
+    mirror_->setEnabled(halves);
+    mirror_->setChecked(state().fields.mirror.value_or(true) && halves);
+    view_->setCurrentIndex(std::max(0, view_->findData(qt(state().fields.view))));
+    units_->setEnabled(std::any_of(cells_.begin(), cells_.end(),
+                                   [](const auto& cell) { return cell->source.id.starts_with("field/"); }));
+    fill_time();
     if (!range_->hasFocus()) {
         const auto& range = state().fields.range;
         range_->setText(range ? qt(core::format_number((*range)[0]) + ":" + core::format_number((*range)[1])) : "");
         range_->setModified(false);
+    }
+}
+
+/// Where a file has several times it can be said which.
+void FieldsPanel::fill_time() {
+    QString times;
+    for (const auto& cell : cells_) {
+        for (const auto& [key, value] :
+             cell->ready ? cell->field->metadata : std::vector<std::pair<std::string, std::string>>{}) {
+            times = key == "times" ? qt(value) : times;
+        }
+    }
+    time_->setVisible(!times.isEmpty() || state().fields.time);
+    time_->setPlaceholderText("time: the last of " + times);
+    if (!time_->hasFocus()) {
+        time_->setText(state().fields.time ? qt(core::format_number(*state().fields.time) + " s") : QString());
+        time_->setModified(false);
     }
 }
 

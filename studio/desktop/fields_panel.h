@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/inputs.h"
+#include "postproc/field/field.h"
 #include "postproc/loads/loads.h"
+#include "postproc/views/views.h"
 #include "studio/desktop/panel.h"
 #include "studio/desktop/scene.h"
 
@@ -15,12 +17,14 @@ class QGridLayout;
 class QLabel;
 class QLineEdit;
 class QListWidget;
+class QPushButton;
 class QStackedLayout;
 
 namespace underbody::studio {
 
 class CompareNumbers;
 class FittedPicture;
+class UnitSheet;
 struct Sheet;
 
 class FieldsPanel : public Panel {
@@ -36,8 +40,15 @@ public:
     void export_table(const std::filesystem::path& path) override;
     /// How many cells show a field that is read.
     [[nodiscard]] std::size_t drawn() const;
-    /// How many cells show their difference to the first.
-    [[nodiscard]] std::size_t differences() const;
+    /// How many cells show a picture in the place of their surface: their difference to the first, a plane,
+    /// streamlines.
+    [[nodiscard]] std::size_t pictures() const;
+    /// The sentence that a cell shows in the place of a picture.
+    [[nodiscard]] QString said(std::size_t cell) const;
+    /// Why the file of a cell was not read; empty: it was, or will be.
+    [[nodiscard]] QString failed(std::size_t cell) const;
+    /// Where what a file does not say is asked for.
+    [[nodiscard]] UnitSheet& unit_sheet();
     [[nodiscard]] Sheet sheet() const;
     [[nodiscard]] QImage picture_to_copy() const override;
     [[nodiscard]] CompareNumbers* numbers() const { return numbers_; }
@@ -51,12 +62,17 @@ private:
         std::filesystem::path file;
         std::vector<std::string> zones;
         QString title;
+        postproc::ReadOptions reading;
+        std::string symmetry;
+        /// Differs where the file is another one, or is to be read otherwise.
+        [[nodiscard]] std::string key() const;
     };
     struct Cell {
         QWidget* box = nullptr;
         QLabel* title = nullptr;
         std::unique_ptr<Scene> scene;
-        FittedPicture* difference = nullptr;  ///< in place of the scene
+        FittedPicture* picture = nullptr;  ///< in place of the scene: a picture, or why there is none
+        QString failed;                    ///< why the file was not read
         std::shared_ptr<const postproc::Field> field;
         std::shared_ptr<const postproc::LoadsResult> loads;
         std::string no_loads;  ///< why there are none
@@ -69,6 +85,7 @@ private:
     void build_controls(QWidget& side);
     [[nodiscard]] std::vector<Source> wanted() const;
     [[nodiscard]] Source source_of(const cases::Case& one) const;
+    [[nodiscard]] Source source_of(const std::filesystem::path& file) const;
     void lay_out(const std::vector<Source>& sources);
     void read(std::size_t cell);
     void taken(std::size_t cell, const std::shared_ptr<const postproc::Field>& field,
@@ -77,9 +94,16 @@ private:
     void show_numbers();
     [[nodiscard]] bool dark() const;
     void fill_controls();
+    void fill_time();
     void recolour();
     void look_from(const std::string& camera);
-    void show_differences();
+    void not_read(std::size_t cell, const QString& why);
+    void ask_units();
+    void show_pictures();
+    [[nodiscard]] postproc::ViewOptions view_options(const Cell& cell) const;
+    [[nodiscard]] std::function<void()> shown_later(const std::vector<std::size_t>& cells, std::vector<QImage> images,
+                                                    std::vector<QString> said, const std::string& key);
+    void draw_views(const std::vector<std::size_t>& cells, const std::string& name);
     void draw_differences(const std::vector<std::size_t>& cells, const std::string& array);
     [[nodiscard]] Cell* first_ready() const;
 
@@ -96,7 +120,11 @@ private:
     QCheckBox* edges_ = nullptr;
     QCheckBox* mirror_ = nullptr;
     QCheckBox* difference_ = nullptr;
-    std::string differences_of_;  ///< what is drawn as differences, or being drawn
+    std::string pictures_of_;  ///< what is drawn as pictures, or being drawn
+    UnitSheet* unit_sheet_ = nullptr;
+    QComboBox* view_ = nullptr;
+    QLineEdit* time_ = nullptr;
+    QPushButton* units_ = nullptr;
     CompareNumbers* numbers_ = nullptr;
     QString unit_;  ///< of the colours
 };

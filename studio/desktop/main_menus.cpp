@@ -66,6 +66,7 @@ void MainWindow::build_file_menu() {
         }
         take_files(files);
     });
+    add(menu, "Ta&ke files into a study …", "", [this] { take_in_what_is_shown(); });
     menu->addSeparator();
     add(menu, "&Save session", "Ctrl+S", [this] { save_session(false); });
     add(menu, "Save session &as …", "Ctrl+Shift+S", [this] { save_session(true); });

@@ -392,28 +392,4 @@ void MainWindow::dropEvent(QDropEvent* event) {
     take_files(files);
 }
 
-void MainWindow::take_files(const std::vector<fs::path>& files) {
-    Words fields = {"select"};
-    for (const fs::path& path : files) {
-        guarded("opening " + qt(path.string()), [&] {
-            if (fs::is_directory(path) || path.filename() == "study.toml" || !fs::exists(path)) {
-                open_study(path);
-            } else if (path.extension() == ".ubs") {
-                desk_->open_session_file(path);
-            } else if (path.extension() == ".toml") {
-                static_cast<void>(geometry::read_shape(path));  // says what is wrong with it
-                desk_->act({"add", "shape", path.string()});
-                desk_->act({"shape", path.stem().string()});
-                desk_->act({"workspace", "design"});
-            } else if (desk_->act({"add", "field", path.string()})) {
-                fields.push_back("field/" + fs::absolute(path).lexically_normal().string());
-            }
-        });
-    }
-    if (fields.size() > 1) {
-        desk_->act(fields);
-        desk_->act({"workspace", "compare"});
-    }
-}
-
 }  // namespace underbody::studio

@@ -25,6 +25,7 @@ class FirstPage;
 class Panel;
 class ProblemList;
 class StudyTree;
+class TakeInSheet;
 
 class MainWindow : public QMainWindow {
     Q_OBJECT
@@ -41,6 +42,8 @@ public:
     [[nodiscard]] const std::vector<Panel*>& panels() const { return panels_; }
     /// What was dropped or named on the command line, by its content: a study, sessions and logs, shapes, CFD files.
     void take_files(const std::vector<std::filesystem::path>& files);
+    /// A sheet that makes cases of a study out of CFD files and folders of them; it deletes itself.
+    TakeInSheet* take_in(const std::vector<std::filesystem::path>& files);
     /// Asks whether to go on where a program that did not wind up stopped.
     void offer_recovery();
     /// The last error that was shown, for a start without anybody at the window.
@@ -85,6 +88,7 @@ private:
     void follow_session();
     void watch_files();
     void show_failure(const QString& what, const std::exception_ptr& error);
+    void take_in_what_is_shown();
     void open_report();
     void export_picture();
     void export_table();

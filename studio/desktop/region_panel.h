@@ -31,6 +31,7 @@ namespace underbody::studio {
 
 class NumberEdit;
 class PlotView;
+struct KnownAlongGap;
 
 class RegionPanel : public Panel {
     Q_OBJECT
@@ -47,6 +48,8 @@ public:
     [[nodiscard]] std::shared_ptr<const dynamics::StabilityRegion> region() const { return region_; }
     [[nodiscard]] std::shared_ptr<const dynamics::ProbabilityMap> probability() const { return probability_; }
     [[nodiscard]] std::shared_ptr<const dynamics::RegionSweep> sweep() const { return sweep_; }
+    /// What the sensors can know along the gap.
+    [[nodiscard]] std::shared_ptr<const KnownAlongGap> known() const { return known_; }
 
 protected:
     void draw_again(bool session) override;
@@ -63,6 +66,8 @@ private:
     void compute_map(const dynamics::RegionOptions& options);
     void compute_probability(const dynamics::RegionOptions& options);
     void compute_sweep(const dynamics::RegionOptions& options);
+    void compute_estimator();
+    void show_known();
     void compute_motion();
     void say_when_nothing();
     void fill_kinds();
@@ -87,6 +92,7 @@ private:
     std::shared_ptr<const dynamics::StabilityRegion> region_;
     std::shared_ptr<const dynamics::ProbabilityMap> probability_;
     std::shared_ptr<const dynamics::RegionSweep> sweep_;
+    std::shared_ptr<const KnownAlongGap> known_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
     std::string map_of_, motion_of_;
     std::optional<bool> drawn_logarithmic_;  ///< what was asked of the map that is drawn
@@ -97,6 +103,10 @@ private:
     QLineEdit* axes_ = nullptr;
     QCheckBox* logarithmic_ = nullptr;
     QLineEdit* sweep_text_ = nullptr;
+    NumberEdit* gap_noise_ = nullptr;
+    NumberEdit* velocity_noise_ = nullptr;
+    NumberEdit* drag_error_ = nullptr;
+    QWidget* sensors_ = nullptr;
     QComboBox* parameter_ = nullptr;
     NumberEdit* value_ = nullptr;
     QFormLayout* form_ = nullptr;

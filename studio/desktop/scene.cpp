@@ -531,7 +531,11 @@ void Scene::Parts::pick() {
     }
 }
 
-void Scene::render() { parts_->window->Render(); }
+void Scene::render() {
+    if (possible()) {
+        parts_->window->Render();
+    }
+}
 
 std::string Scene::png() {
     render();

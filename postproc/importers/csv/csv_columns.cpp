@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "core/text.h"
+#include "postproc/field/import_error.h"
 #include "postproc/importers/mesh/array_names.h"
 #include "postproc/importers/mesh/variable_reading.h"
 
@@ -136,8 +137,8 @@ private:
         state_unit(plan);
         const std::string& stated = options_.length_unit;
         if (!plan.has_unit && stated.empty()) {
-            throw InputError("unit", "coordinate '" + plan.name + "' has no unit", place,
-                             "say it: option 'length-unit mm' (or m, inch, ...)");
+            throw UnitMissing("coordinate '" + plan.name + "' has no unit", place,
+                              "say it: option 'length-unit mm' (or m, inch, ...)", "", "m");
         }
         if (plan.has_unit && !stated.empty() && core::same_dimension(plan.unit, stated) &&
             core::conversion(plan.unit, stated).scale != 1) {
@@ -159,8 +160,9 @@ private:
             meaning.name == "pressure" || meaning.name.starts_with("wall_shear");  // for loads: nothing is guessed
         const bool pure = meaning.unit.empty() || meaning.unit == "1";
         if (!plan.has_unit && !pure && counts) {
-            throw InputError("unit", "column '" + plan.name + "' has no unit", place,
-                             "say it: option 'unit " + plan.name + "=" + meaning.unit + "'");
+            throw UnitMissing("column '" + plan.name + "' has no unit", place,
+                              "say it: option 'unit " + plan.name + "=" + meaning.unit + "'", plan.name,
+                              meaning.unit);
         }
         if (!plan.has_unit) {
             if (!pure) {

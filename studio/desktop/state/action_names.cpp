@@ -1,5 +1,6 @@
 // What actions are called, how they merge, and the command lines that do the same.
 #include <algorithm>
+#include <filesystem>
 
 #include "core/text.h"
 #include "studio/desktop/state/actions.h"
@@ -101,6 +102,27 @@ std::string table_command(const State& state, const Words& words) {
     return line.size() > 4 ? line_of(line) : std::string();
 }
 
+/// With the data of a measurement of the study; without any the command has nothing to estimate from.
+std::string estimate_command(const State& state, const Session& session, const std::string& name,
+                             const RegionView& view) {
+    if (session.study.measurements.empty() || !view.set.empty()) {
+        return {};
+    }
+    Words line = {"underbody",
+                  "estimate",
+                  state.study + "/report/models/" + name + "/model.toml",
+                  "--data",
+                  session.study.measurements.front().data.string(),
+                  "--gap-noise",
+                  core::format_number(view.gap_noise) + "m"};
+    if (view.velocity_noise > 0) {
+        line.insert(line.end(), {"--velocity-noise", core::format_number(view.velocity_noise) + "m/s"});
+    }
+    line.insert(line.end(), {"--drag-error", core::format_number(view.drag_error), "--force-density", "1e-7",
+                             "--blind-zones", "blind-zones.png"});
+    return line_of(line);
+}
+
 std::string region_command(const State& state, const Session& session, const std::string& name) {
     const auto& regions = session.study.regions;
     const auto spec =
@@ -108,6 +130,9 @@ std::string region_command(const State& state, const Session& session, const std
     const auto view = state.regions.find(name);
     if (spec == regions.end() || view == state.regions.end()) {
         return {};
+    }
+    if (view->second.show == "estimator") {
+        return estimate_command(state, session, name, view->second);
     }
     // The model with the study's tables, as `study run` writes it.
     Words line = {"underbody", "region", state.study + "/report/models/" + name + "/model.toml", "--axes",
@@ -128,6 +153,80 @@ std::string region_command(const State& state, const Session& session, const std
         line.insert(line.end(), {"--set", parameter + "=" + core::format_number(value)});
     }
     return line_of(line);
+}
+
+std::string path_of_field(const std::string& id, const Session& session) {
+    if (id.starts_with("field/")) {
+        return id.substr(6);
+    }
+    for (const auto& one : session.study.cases) {
+        if ("case/" + one.name == id) {
+            return one.file.string();
+        }
+    }
+    return {};
+}
+
+void add_reading(const State& state, const std::string& file, Words& line) {
+    const auto at = state.readings.find(file);
+    if (at == state.readings.end()) {
+        return;
+    }
+    const FileReading& reading = at->second;
+    if (!reading.length_unit.empty()) {
+        line.insert(line.end(), {"--length-unit", reading.length_unit});
+    }
+    for (const auto& [variable, unit] : reading.units) {
+        line.insert(line.end(), {"--unit", variable + "=" + unit});
+    }
+    if (!reading.symmetry.empty()) {
+        line.insert(line.end(), {"--symmetry", reading.symmetry});
+    }
+    std::string zones;
+    for (const auto& zone : reading.zones) {
+        zones += (zones.empty() ? "" : ",") + zone;
+    }
+    if (!zones.empty()) {
+        line.insert(line.end(), {"--zones", zones});
+    }
+}
+
+/// Pictures of the fields that are chosen; surfaces that are turned by hand have no command.
+std::string view_command(const State& state, const Session& session) {
+    if (state.fields.view == "surface") {
+        return {};
+    }
+    Words line = {"underbody", "views"};
+    for (const auto& id : state.selection) {
+        if (const std::string file = path_of_field(id, session); !file.empty()) {
+            line.push_back(file);
+            add_reading(state, file, line);
+        }
+    }
+    if (line.size() == 2) {
+        return {};
+    }
+    line.insert(line.end(), {"--view", state.fields.view});
+    if (!session.study.symmetry.empty() && std::find(line.begin(), line.end(), "--symmetry") == line.end()) {
+        line.insert(line.end(), {"--symmetry", session.study.symmetry});
+    }
+    if (state.fields.time) {
+        line.insert(line.end(), {"--time", core::format_number(*state.fields.time) + "s"});
+    }
+    return line_of(line);
+}
+
+/// The loads of the first file that was named.
+std::string read_command(const State& state, const Words& words) {
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const std::string file = std::filesystem::absolute(words[i]).lexically_normal().string();
+        if (std::find(state.files.begin(), state.files.end(), "field:" + file) != state.files.end()) {
+            Words line = {"underbody", "loads", file};
+            add_reading(state, file, line);
+            return line_of(line);
+        }
+    }
+    return {};
 }
 
 }  // namespace
@@ -158,6 +257,9 @@ std::string name_of(const Words& words) {
     }
     if (verb == "reset") {
         return first.empty() ? "reset the shape" : "reset " + first + more;
+    }
+    if (verb == "read") {
+        return "units of " + first.substr(first.rfind('/') + 1) + more;
     }
     if (verb == "exported") {
         return "export " + first.substr(first.rfind('/') + 1);
@@ -198,6 +300,12 @@ std::string command_of(const State& after, const Words& words, const Session& se
         Words line = shape_command(after, session, name);
         add_operation(after, line);
         return line_of(line);
+    }
+    if (verb == "read") {
+        return read_command(after, words);
+    }
+    if (verb == "fields") {
+        return view_command(after, session);
     }
     if (verb == "keep") {
         Words line = shape_command(after, session, words.at(1));

@@ -78,6 +78,10 @@ void write_session(const State& state, const fs::path& file) {
         const auto at = entry.find(':') + 1;
         entry = entry.substr(0, at) + relative_to(folder, entry.substr(at));
     }
+    relative.readings.clear();
+    for (const auto& [path, reading] : state.readings) {
+        relative.readings[relative_to(folder, path)] = reading;
+    }
     document["schema"] = schema;
     document["version"] = version;
     document["state"] = relative;
@@ -100,6 +104,11 @@ SavedSession read_session(const fs::path& file) {
         const auto at = entry.find(':') + 1;
         entry = entry.substr(0, at) + absolute_in(folder, entry.substr(at));
     }
+    std::map<std::string, FileReading> readings;
+    for (const auto& [path, reading] : saved.state.readings) {
+        readings[absolute_in(folder, path)] = reading;
+    }
+    saved.state.readings = std::move(readings);
     for (const auto& input : document.value("inputs", json::array())) {
         const std::string path = absolute_in(folder, input.value("path", ""));
         if (!fs::exists(file_of(path))) {

@@ -139,6 +139,8 @@ json json_of(const FieldView& v) {
             {"range", optional_json(v.range)},
             {"difference", v.difference},
             {"camera", v.camera},
+            {"view", v.view},
+            {"time", optional_json(v.time)},
             {"zones", v.zones}};
 }
 
@@ -151,6 +153,21 @@ FieldView fields_from(const json& object) {
     take(object, "range", v.range);
     take(object, "difference", v.difference);
     take(object, "camera", v.camera);
+    take(object, "view", v.view);
+    take(object, "time", v.time);
+    take(object, "zones", v.zones);
+    return v;
+}
+
+json json_of(const FileReading& v) {
+    return {{"length_unit", v.length_unit}, {"units", v.units}, {"symmetry", v.symmetry}, {"zones", v.zones}};
+}
+
+FileReading reading_from(const json& object) {
+    FileReading v;
+    take(object, "length_unit", v.length_unit);
+    take(object, "units", v.units);
+    take(object, "symmetry", v.symmetry);
     take(object, "zones", v.zones);
     return v;
 }
@@ -181,6 +198,9 @@ json json_of(const RegionView& v) {
             {"sweep", v.sweep},
             {"steps", v.steps},
             {"draws", v.draws},
+            {"gap_noise", v.gap_noise},
+            {"velocity_noise", v.velocity_noise},
+            {"drag_error", v.drag_error},
             {"logarithmic", optional_json(v.logarithmic)},
             {"duration", optional_json(v.duration)},
             {"start", optional_json(v.start)}};
@@ -195,6 +215,9 @@ RegionView region_from(const json& object) {
     take(object, "sweep", v.sweep);
     take(object, "steps", v.steps);
     take(object, "draws", v.draws);
+    take(object, "gap_noise", v.gap_noise);
+    take(object, "velocity_noise", v.velocity_noise);
+    take(object, "drag_error", v.drag_error);
     take(object, "logarithmic", v.logarithmic);
     take(object, "duration", v.duration);
     take(object, "start", v.start);
@@ -261,6 +284,10 @@ State read_state(const json& object) {
     for (const auto& [file, one] : exports.items()) {
         state.exports[file] = export_from(one);
     }
+    const json readings = object.value("readings", json::object());
+    for (const auto& [file, one] : readings.items()) {
+        state.readings[file] = reading_from(one);
+    }
     const json regions = object.value("regions", json::object());
     for (const auto& [name, one] : regions.items()) {
         state.regions[name] = region_from(one);
@@ -282,6 +309,7 @@ void to_json(json& object, const State& state) {
               {"fields", json_of(state.fields)},
               {"explore", json_of(state.explore)},
               {"tables", json::object()},
+              {"readings", json::object()},
               {"regions", json::object()},
               {"exports", json::object()}};
     for (const auto& [file, one] : state.exports) {
@@ -289,6 +317,9 @@ void to_json(json& object, const State& state) {
     }
     for (const auto& [name, one] : state.tables) {
         object["tables"][name] = json_of(one);
+    }
+    for (const auto& [file, one] : state.readings) {
+        object["readings"][file] = json_of(one);
     }
     for (const auto& [name, one] : state.regions) {
         object["regions"][name] = json_of(one);

@@ -41,15 +41,27 @@ struct TableView {
 struct RegionView {
     std::map<std::string, double> set;           ///< declared parameters, SI
     int cells = 200;                             ///< starts a side
-    std::string show = "ends";                   ///< "ends", "probability", "sweep"
+    std::string show = "ends";                   ///< "ends", "probability", "sweep", "estimator"
     std::string axes;                            ///< "gap=1mm:20mm,pitch=-3deg:3deg"; empty: as the study says
     std::string sweep;                           ///< "jet_voltage=0:10": what the maps of a sweep differ in
     int steps = 5;                               ///< maps of the sweep
     std::optional<bool> logarithmic;             ///< gap axis; none: where it spans decades
     int draws = 30;                              ///< of the tables, for the probability
+    double gap_noise = 2e-4;                     ///< m, one standard deviation of a reading: for the estimator
+    double velocity_noise = 0;                   ///< m/s; 0: the heave velocity is not measured
+    double drag_error = 0.2;                     ///< relative deviation of the declared drag law
     std::optional<double> duration;              ///< s; none: as the study says
     std::optional<std::array<double, 2>> start;  ///< gap (m) and heave velocity (m/s) of the motion that is shown
     bool operator==(const RegionView&) const = default;
+};
+
+/// What somebody said of a file from outside the study that it does not say itself.
+struct FileReading {
+    std::string length_unit;                   ///< of its coordinates
+    std::map<std::string, std::string> units;  ///< of variables by their name in the file
+    std::string symmetry;                      ///< normal axis of a half model; empty: a whole body
+    std::vector<std::string> zones;            ///< patterns of the zones that are the body
+    bool operator==(const FileReading&) const = default;
 };
 
 /// How fields are looked at: one array, range, camera and set of zones for all cells.
@@ -60,6 +72,8 @@ struct FieldView {
     std::optional<bool> mirror;                  ///< none: half models are mirrored
     std::optional<std::array<double, 2>> range;  ///< of the colours; none: of what is seen
     bool difference = false;                     ///< to the first case
+    std::string view = "surface";                ///< or a picture of postproc::view_kinds: planes, streamlines
+    std::optional<double> time;                  ///< s, of files with several; none: the last
     std::string camera = "iso";                  ///< "bottom", "top", "side", "front", "iso"
     std::map<std::string, bool> zones;           ///< ticked by hand
     bool operator==(const FieldView&) const = default;
@@ -106,6 +120,7 @@ struct State {
     std::set<std::string> stars;
     DesignView design;
     FieldView fields;
+    std::map<std::string, FileReading> readings;  ///< by path, absolute
     ExploreView explore;
     std::map<std::string, TableView> tables;
     std::map<std::string, RegionView> regions;

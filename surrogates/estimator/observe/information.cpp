@@ -159,6 +159,59 @@ core::Figure InformationMap::figure() const {
     return f;
 }
 
+core::Figure InformationMap::along_gap(double speed) const {
+    const auto nearest = std::min_element(
+        speeds.begin(), speeds.end(), [&](double a, double b) { return std::abs(a - speed) < std::abs(b - speed); });
+    const auto row = static_cast<std::size_t>(nearest - speeds.begin()) * gaps.size();
+    core::Figure f;
+    f.title = "What can be told apart at " + core::format_number(1e3 * *nearest, 3) + " mm/s";
+    f.caption =
+        "Least standard deviations of the forces along the gap. A force is seen where its size lies above its "
+        "curve.";
+    f.x = {"gap", "mm", 1e3 * gaps.front(), 1e3 * gaps.back()};
+    double highest = 0;
+    const auto curve = [&](const char* name, const std::vector<double>& values, std::size_t from, int colour,
+                           bool dashed) {
+        core::FigureCurve drawn;
+        drawn.name = name;
+        drawn.colour = core::palette(colour);
+        drawn.dashed = dashed;
+        for (std::size_t i = 0; i < gaps.size(); ++i) {
+            drawn.x.push_back(1e3 * gaps[i]);
+            drawn.y.push_back(1e3 * std::abs(values[from + i]));
+            highest = std::max(highest, drawn.y.back());
+        }
+        f.curves.push_back(std::move(drawn));
+    };
+    curve("error of the ground force", ground_sigma, row, 1, false);
+    curve("error of the drag", drag_sigma, row, 2, false);
+    curve("error of their sum", total_sigma, row, 0, false);
+    curve("size of the ground force", ground_force, 0, 7, true);
+    f.y = {"force", "mN", 0, 1.05 * highest};
+    return f;
+}
+
+core::Table InformationMap::table() const {
+    core::Table table;
+    std::vector<double> gap, speed, ground, drag, blind;
+    for (std::size_t i = 0; i < ground_sigma.size(); ++i) {
+        gap.push_back(gaps[i % gaps.size()]);
+        speed.push_back(speeds[i / gaps.size()]);
+        ground.push_back(ground_force[i % gaps.size()]);
+        drag.push_back(drag_force[i / gaps.size()]);
+        blind.push_back(ground_blind[i] ? 1 : 0);
+    }
+    table.add_numbers("gap", "m", std::move(gap));
+    table.add_numbers("heave_velocity", "m/s", std::move(speed));
+    table.add_numbers("ground_force", "N", std::move(ground));
+    table.add_numbers("ground_force_sigma", "N", ground_sigma);
+    table.add_numbers("drag_force", "N", std::move(drag));
+    table.add_numbers("drag_force_sigma", "N", drag_sigma);
+    table.add_numbers("total_force_sigma", "N", total_sigma);
+    table.add_numbers("blind", "1", std::move(blind));
+    return table;
+}
+
 ObservabilityAlongGap observability_along_gap(const SeparatedPlant& plant, const std::vector<double>& gaps) {
     ObservabilityAlongGap result;
     result.gaps = gaps;

@@ -6,6 +6,7 @@
 
 #include "core/figure.h"
 #include "core/progress.h"
+#include "core/table.h"
 #include "surrogates/estimator/observe/extended_filter.h"
 
 namespace underbody::estimator {
@@ -32,6 +33,11 @@ struct InformationMap {
     double blind_share = 0;
 
     [[nodiscard]] core::Figure figure() const;
+    /// The bounds of the three forces along the gap beside the size of the ground force, at the speed of `speeds` that
+    /// lies nearest.
+    [[nodiscard]] core::Figure along_gap(double speed) const;
+    /// One row a gap and speed: the forces, their bounds, blind or not.
+    [[nodiscard]] core::Table table() const;
 };
 InformationMap information_along_gap(const SeparatedPlant& plant, const InformationOptions& options,
                                      core::Progress& progress = core::Progress::none());

@@ -53,6 +53,10 @@ std::vector<std::string> every_action() {
             "rows cases",
             "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
             "range.gap=clamp",
+            "add field /data/body.csv",
+            "read /data/body.csv length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base",
+            "fields view=speed-symmetry time=0.5s",
+            "region glide show=estimator gap_noise=0.1mm velocity_noise=1mm/s drag_error=0.3",
             "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
             "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
             "locate " + evie().string() + " /elsewhere/evie",
@@ -120,6 +124,30 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
     EXPECT_EQ(state_hash(*history.state()), last);
 }
 
+// What somebody said of a file goes with it: into the command, away with it, and to where it has moved.
+TEST(StudioActions, WhatAFileDoesNotSayGoesWithIt) {
+    History history(opened());
+    const auto act = [&](const std::string& line) { history.act(words_of(line), *evie_session()); };
+    act("add field /data/a.csv");
+    act("add field /data/b.csv");
+    act("read /data/a.csv /data/b.csv length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base");
+    EXPECT_EQ(history.steps().back().command,
+              "underbody loads /data/a.csv --length-unit mm --unit Pressure=kPa --symmetry y --zones 'hull*,base'");
+    EXPECT_EQ(history.state()->readings.size(), 2U);
+    EXPECT_THROW(act("read /data/a.csv length_unit=Pa"), core::Error);
+    EXPECT_THROW(act("read /data/a.csv lenght_unit=mm"), core::Error);
+    act("locate /data/a.csv /moved/a.csv");
+    EXPECT_EQ(history.state()->readings.at("/moved/a.csv").length_unit, "mm");
+    act("remove /data/b.csv");
+    EXPECT_FALSE(history.state()->readings.contains("/data/b.csv"));
+    act("read /moved/a.csv length_unit= unit.Pressure= symmetry= zones=");
+    EXPECT_TRUE(history.state()->readings.empty()) << "nothing said is nothing kept";
+    history.go_to(3);
+    const core::TemporaryFolder folder;
+    write_session(*history.state(), folder.path() / "s.ubs");
+    EXPECT_EQ(read_session(folder.path() / "s.ubs").state.readings, history.state()->readings);
+}
+
 TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
     History history(opened());
     const std::vector<std::pair<std::string, std::string>> wrong = {
@@ -132,6 +160,10 @@ TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
         {"region glid cells=30", "glide"},
         {"region glide cells=3", "20"},
         {"fields camera=botom", "bottom"},
+        {"fields view=speed-symetry", "speed-symmetry"},
+        {"read /data/other.csv length_unit=mm", "add field"},
+        {"read length_unit=mm", "no file"},
+        {"region glide gap_noise=0", "noise of the gap"},
         {"operation gap=-3mm", "gap"},
         {"brush gap=5mm:2mm", "smaller"},
         {"keep ellipse", "another name"},

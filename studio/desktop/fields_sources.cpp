@@ -1,0 +1,222 @@
+// Compare: which files are shown, how they are read, and what is done with one that cannot be.
+#include "cases/case_loads.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "postproc/field/import_error.h"
+#include "postproc/field/unstated_units.h"
+#include "postproc/loads/loads.h"
+#include "studio/desktop/compare_numbers.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/fitted_picture.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/unit_sheet.h"
+
+namespace underbody::studio {
+
+namespace {
+
+constexpr std::size_t most_cells = 6;
+
+}  // namespace
+
+std::string FieldsPanel::Source::key() const {
+    std::string text = id + "\n" + reading.length_unit + "\n" + symmetry;
+    for (const auto& [variable, unit] : reading.units) {
+        text += "\n" + variable + "=" + unit;
+    }
+    for (const auto& zone : zones) {
+        text += "\n" + zone;
+    }
+    return text + "\n" + (reading.time ? core::format_number(*reading.time) : "");
+}
+
+FieldsPanel::Source FieldsPanel::source_of(const cases::Case& one) const {
+    Source source{"case/" + one.name, one.file, one.zones, qt(one.name + ": " + one.conditions.label()), {}, {}};
+    source.reading = cases::read_options(one);
+    source.symmetry = session().study.symmetry;
+    return source;
+}
+
+FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) const {
+    Source source{"field/" + file.string(), file, {}, qt(file.filename().string()), {}, {}};
+    source.symmetry = session().study.symmetry;
+    if (const auto said = state().readings.find(file.string()); said != state().readings.end()) {
+        source.reading.length_unit = said->second.length_unit;
+        source.reading.units.assign(said->second.units.begin(), said->second.units.end());
+        source.zones = said->second.zones;
+        source.symmetry = said->second.symmetry.empty() ? source.symmetry : said->second.symmetry;
+    }
+    return source;
+}
+
+std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
+    std::vector<Source> sources;
+    const auto add = [&](const std::string& id) {
+        if (id.starts_with("field/")) {
+            sources.push_back(source_of(std::filesystem::path(id.substr(6))));
+        }
+        for (const auto& one : session().study.cases) {
+            if ("case/" + one.name == id) {
+                sources.push_back(source_of(one));
+            }
+        }
+    };
+    for (const auto& id : state().selection) {
+        add(id);
+    }
+    if (const auto last = state().last.find("case"); sources.empty() && last != state().last.end()) {
+        for (const auto& name : last->second) {
+            add("case/" + name);
+        }
+    }
+    if (sources.empty() && !session().study.cases.empty()) {
+        // A picture from the start: the first case that the study itself wants pictures of, else the first of all.
+        const cases::Case* chosen = &session().study.cases.front();
+        for (const auto& picture : session().study.pictures) {
+            if (const auto found = session().study.select(picture.where); !found.empty()) {
+                chosen = found.front();
+                break;
+            }
+        }
+        sources.push_back(source_of(*chosen));
+    }
+    if (sources.size() > most_cells) {
+        sources.resize(most_cells);
+    }
+    for (auto& source : sources) {
+        source.reading.time = state().fields.time;
+    }
+    return sources;
+}
+
+namespace {
+
+/// The loads of a field that was read, with their running integral; why there are none.
+struct FieldLoads {
+    std::shared_ptr<const postproc::LoadsResult> loads;
+    std::string why;
+};
+
+FieldLoads sum_of(const postproc::Field& field, postproc::LoadsOptions options, core::Progress& progress) {
+    options.stations = 80;
+    try {
+        return {std::make_shared<const postproc::LoadsResult>(postproc::loads(field, options, progress)), {}};
+    } catch (const core::InputError& error) {
+        return {nullptr, error.message() + (error.hint().empty() ? "" : "; " + error.hint())};
+    } catch (const core::UsageError& error) {
+        return {nullptr, error.message()};
+    }
+}
+
+}  // namespace
+
+postproc::LoadsOptions FieldsPanel::loads_options(const Source& source) const {
+    for (const auto& one : session().study.cases) {
+        if ("case/" + one.name == source.id) {
+            return cases::loads_options(session().study, one);
+        }
+    }
+    cases::Case outside;
+    outside.file = source.file;
+    outside.zones = source.zones;
+    postproc::LoadsOptions options =
+        session().folder.empty() ? postproc::LoadsOptions() : cases::loads_options(session().study, outside);
+    options.zones = source.zones;
+    options.symmetry = source.symmetry;
+    return options;
+}
+
+namespace {
+
+/// What a person is told of a file that cannot be read.
+QString sentence_of(const core::Error& error) {
+    return qt(error.place().text() + (error.place().text().empty() ? "" : ": ") + error.message() +
+              (error.hint().empty() ? "" : "\n" + error.hint()));
+}
+
+}  // namespace
+
+/// One that cannot be read says why in its cell, and the others go on.
+void FieldsPanel::read(std::size_t index) {
+    const Source source = cells_[index]->source;
+    jobs_.start(
+        QString("field %1").arg(index), "reading " + qt(source.file.filename().string()),
+        [this, index, source, options = loads_options(source)](core::Progress& progress) -> std::function<void()> {
+            const auto current = [this, index, key = source.key()] {
+                return index < cells_.size() && cells_[index]->source.key() == key;
+            };
+            try {
+                postproc::ReadOptions reading = source.reading;
+                reading.surfaces_only = true;
+                auto field =
+                    std::make_shared<const postproc::Field>(postproc::read_field(source.file, reading, progress));
+                const auto prepared = Scene::prepare(field, source.symmetry);
+                const auto sum = sum_of(*field, options, progress);
+                return [this, current, index, field, prepared, sum] {
+                    if (current()) {
+                        cells_[index]->loads = sum.loads;
+                        cells_[index]->no_loads = sum.why;
+                        taken(index, field, prepared);
+                    }
+                };
+            } catch (const core::Cancelled&) {
+                throw;
+            } catch (const postproc::UnitMissing& error) {
+                const auto units = postproc::unstated_units(source.file, source.reading, progress);
+                const QString text =
+                    qt(error.place().text() + ": " + error.message()) + "\nUnits, half model … says it";
+                return [this, current, index, units, text] {
+                    if (current()) {
+                        not_read(index, text);
+                        unit_sheet().ask(cells_[index]->source.file, units);
+                    }
+                };
+            } catch (const core::Error& error) {
+                return [this, current, index, text = sentence_of(error), why = std::current_exception()] {
+                    if (current()) {
+                        not_read(index, text);
+                        Q_EMIT desk_.refused("reading " + qt(cells_[index]->source.file.filename().string()), why);
+                    }
+                };
+            }
+        });
+}
+
+void FieldsPanel::not_read(std::size_t index, const QString& why) {
+    Cell& cell = *cells_[index];
+    cell.ready = false;
+    cell.field.reset();
+    cell.failed = why;
+    cell.no_loads = why.toStdString();
+    show_numbers();
+    recolour();
+}
+
+QString FieldsPanel::failed(std::size_t index) const {
+    return index < cells_.size() ? cells_[index]->failed : QString();
+}
+
+UnitSheet& FieldsPanel::unit_sheet() {
+    if (unit_sheet_ == nullptr) {
+        unit_sheet_ = new UnitSheet(desk_, this);
+    }
+    return *unit_sheet_;
+}
+
+/// Of the files from outside that are shown, also where nothing is missing.
+void FieldsPanel::ask_units() {
+    for (const auto& cell : cells_) {
+        if (!cell->source.id.starts_with("field/")) {
+            continue;
+        }
+        const Source source = cell->source;
+        jobs_.start("units of " + qt(source.id), "looking for units in " + qt(source.file.filename().string()),
+                    [this, source](core::Progress& progress) {
+                        postproc::ReadOptions bare;
+                        const auto units = postproc::unstated_units(source.file, bare, progress);
+                        return [this, source, units] { unit_sheet().ask(source.file, units); };
+                    });
+    }
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,81 @@
+// What is dropped on the window, or named on its command line: content decides what becomes of it.
+#include <filesystem>
+
+#include "core/error.h"
+#include "geometry/body/body_shape.h"
+#include "postproc/importers/importer.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/problems_panel.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/take_in_sheet.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+void MainWindow::take_files(const std::vector<fs::path>& files) {
+    Words fields = {"select"};
+    std::vector<fs::path> folders;
+    for (const fs::path& path : files) {
+        guarded("opening " + qt(path.string()), [&] {
+            const bool folder = fs::is_directory(path);
+            if (path.filename() == "study.toml" || !fs::exists(path) || fs::exists(path / "study.toml")) {
+                open_study(path);
+            } else if (folder && postproc::importer_for(path) == nullptr) {
+                folders.push_back(path);
+            } else if (path.extension() == ".ubs") {
+                desk_->open_session_file(path);
+            } else if (path.extension() == ".toml") {
+                static_cast<void>(geometry::read_shape(path));  // says what is wrong with it
+                desk_->act({"add", "shape", path.string()});
+                desk_->act({"shape", path.stem().string()});
+                desk_->act({"workspace", "design"});
+            } else if (desk_->act({"add", "field", path.string()})) {
+                fields.push_back("field/" + fs::absolute(path).lexically_normal().string());
+            }
+        });
+    }
+    if (fields.size() > 1) {
+        desk_->act(fields);
+        desk_->act({"workspace", "compare"});
+    }
+    if (!folders.empty()) {
+        take_in(folders);
+    }
+}
+
+TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {
+    // Beside the files a new study begins, unless they lie in the one that is open.
+    fs::path folder = fs::absolute(files.front()).lexically_normal();
+    folder = fs::is_directory(folder) ? folder : folder.parent_path();
+    if (const fs::path open = desk_->session().folder; !open.empty()) {
+        const auto below = folder.lexically_relative(open);
+        folder = !below.empty() && *below.begin() != ".." ? open : folder;
+    }
+    auto* sheet = new TakeInSheet(*jobs_, folder, files, this);
+    connect(sheet, &TakeInSheet::failed, this, &MainWindow::show_failure);
+    connect(sheet, &TakeInSheet::taken, this, [this](const QString& study, const QString& command, int cases) {
+        problems_->note(QString("Took in %1 cases. The same: ").arg(cases) + command);
+        desk_->open_and_run(study.toStdString());
+    });
+    sheet->show();
+    return sheet;
+}
+
+void MainWindow::take_in_what_is_shown() {
+    std::vector<fs::path> files;
+    for (const auto& entry : desk_->state().files) {
+        if (entry.starts_with("field:")) {
+            files.emplace_back(entry.substr(6));
+        }
+    }
+    guarded("taking files in", [&] {
+        if (files.empty()) {
+            throw core::InputError("missing", "there are no files from outside a study", {},
+                                   "drop CFD files or a folder of them on the window");
+        }
+        take_in(files);
+    });
+}
+
+}  // namespace underbody::studio

@@ -1,0 +1,357 @@
+// First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
+// clang-format off
+#include "cases/region_model.h"
+#include "studio/desktop/region_known.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/basin/region.h"
+// clang-format on
+
+#include <QBoxLayout>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QSplitter>
+#include <algorithm>
+#include <cmath>
+
+#include "core/table.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "studio/desktop/map_number.h"
+#include "studio/desktop/parameter_row.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/region_panel.h"
+#include "studio/figures/render.h"
+#include "surrogates/tables/analysis/figures.h"
+
+namespace underbody::studio {
+
+namespace {
+
+QString summary(const dynamics::StabilityRegion& region) {
+    QString text = "<table cellspacing=0 cellpadding=2>";
+    for (const auto& end : region.classes) {
+        QString name = qt(end.name);
+        if (std::isfinite(end.gap)) {
+            name += QString(" at %1 mm").arg(map_number(1000 * end.gap, 3));
+        }
+        text +=
+            QString("<tr><td>%1</td><td align=right>&nbsp;%2 %</td></tr>").arg(name, map_number(100 * end.fraction, 3));
+    }
+    text += "</table>";
+    if (region.outside_fraction > 0) {
+        text += QString(
+                    "<p>%1 % of the starts lie outside the range of the force tables, which hold their end values "
+                    "there.</p>")
+                    .arg(map_number(100 * region.outside_fraction, 3));
+    }
+    if (region.path_outside_fraction > 0) {
+        text += QString("<p>%1 % of the motions are at some time outside that range.</p>")
+                    .arg(map_number(100 * region.path_outside_fraction, 3));
+    }
+    return text;
+}
+
+/// Adds the trajectory to the map, in the map's units.
+void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, const dynamics::Trajectory& trajectory) {
+    const auto values_of = [&](const std::string& axis) -> const std::vector<double>* {
+        return axis == "gap" ? &trajectory.gap : axis == "heave_velocity" ? &trajectory.heave_velocity : nullptr;
+    };
+    const auto* x = values_of(region.axes[0].name);
+    const auto* y = values_of(region.axes[1].name);
+    if (x == nullptr || y == nullptr || x->empty()) {
+        return;
+    }
+    const auto to_x = core::conversion(region.axes[0].name == "gap" ? "m" : "m/s", figure.x.unit);
+    const auto to_y = core::conversion(region.axes[1].name == "gap" ? "m" : "m/s", figure.y.unit);
+    core::FigureCurve path;
+    path.name = "motion from the start";
+    path.colour = {20, 20, 20, 255};
+    path.width = 1.8;
+    std::transform(x->begin(), x->end(), std::back_inserter(path.x), to_x);
+    std::transform(y->begin(), y->end(), std::back_inserter(path.y), to_y);
+    core::FigurePoints start{
+        "start", {path.x.front()}, {path.y.front()}, {}, {20, 20, 20, 255}, core::FigurePoints::Shape::diamond, 10};
+    figure.curves.push_back(std::move(path));
+    figure.points.push_back(std::move(start));
+}
+
+}  // namespace
+
+void RegionPanel::compute() {
+    if (map_of_ == map_key()) {
+        if (region_ && settings().logarithmic != drawn_logarithmic_) {  // the same map on another scale
+            show_region();
+        } else if (known_) {
+            show_known();
+        } else if (probability_ && settings().logarithmic != drawn_logarithmic_) {
+            show_map(dynamics::probability_figure(*probability_));
+        }
+        return;
+    }
+    map_of_ = map_key();
+    region_.reset();
+    probability_.reset();
+    sweep_.reset();
+    known_.reset();
+    trajectory_.reset();
+    motion_of_.clear();
+    about_->clear();
+    dynamics::RegionOptions options = cases::region_options(spec_);
+    if (!settings().axes.empty()) {
+        options.axes = core::parse_ranges(settings().axes);
+    }
+    options.columns = options.rows = static_cast<std::size_t>(settings().cells);
+    options.duration = duration();
+    motion_->show_text("Click a start in a map of where starts end to see its motion");
+    if (settings().show == "probability") {
+        compute_probability(options);
+    } else if (settings().show == "sweep") {
+        compute_sweep(options);
+    } else if (settings().show == "estimator") {
+        compute_estimator();
+    } else {
+        compute_map(options);
+    }
+}
+
+void RegionPanel::compute_map(const dynamics::RegionOptions& options) {
+    jobs_.start(
+        "region", "stability map",
+        [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+            auto region =
+                std::make_shared<const dynamics::StabilityRegion>(dynamics::stability_region(model, options, progress));
+            return [this, region, key] {
+                if (key == map_of_) {
+                    region_ = region;
+                    show_region();
+                    compute_motion();
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+/// A map that failed or was cancelled is not waited for.
+void RegionPanel::say_when_nothing() {
+    if (!region_ && !probability_ && !sweep_ && !known_ && !jobs_.busy("region")) {
+        map_->show_text("There is no map: what is missing stands under Problems");
+    }
+}
+
+/// Draws of the tables are many maps: at most 80 starts a side.
+void RegionPanel::compute_probability(const dynamics::RegionOptions& wanted) {
+    dynamics::RegionOptions options = wanted;
+    options.columns = options.rows = std::min<std::size_t>(wanted.rows, 80);
+    options.refine = false;
+    map_->show_text("…");
+    jobs_.start(
+        "region", "chance of a safe end",
+        [this, model = changed_model(), options, draws = static_cast<std::size_t>(settings().draws),
+         key = map_of_](core::Progress& progress) {
+            auto found = std::make_shared<const dynamics::ProbabilityMap>(
+                dynamics::probability_map(model, options, draws, 1, progress));
+            return [this, found, key] {
+                if (key == map_of_) {
+                    probability_ = found;
+                    about_->setText(
+                        QString("%1 ± %2 % of the starts end well, over %3 draws of the tables.")
+                            .arg(map_number(100 * found->area_mean, 3), map_number(100 * found->area_sigma, 2))
+                            .arg(found->draws));
+                    for (const auto& remark : found->remarks) {
+                        Q_EMIT problem(remark);
+                    }
+                    show_map(dynamics::probability_figure(*found));
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+void RegionPanel::compute_sweep(const dynamics::RegionOptions& wanted) {
+    if (settings().sweep.empty()) {
+        jobs_.cancel("region");
+        map_->show_text("Name the condition that is swept, such as speed=0.3:0.7");
+        return;
+    }
+    dynamics::RegionOptions options = wanted;
+    options.columns = options.rows = std::min<std::size_t>(wanted.rows, 120);
+    const core::NamedRange range = core::parse_ranges(settings().sweep).front();
+    map_->show_text("…");
+    jobs_.start(
+        "region", "stability maps over " + qt(range.name),
+        [this, model = changed_model(), options, range, steps = static_cast<std::size_t>(settings().steps),
+         key = map_of_](core::Progress& progress) {
+            auto found = std::make_shared<const dynamics::RegionSweep>(
+                dynamics::swept_regions(model, options, range, steps, progress));
+            return [this, found, key] {
+                if (key == map_of_) {
+                    sweep_ = found;
+                    map_->show_figure(dynamics::sweep_figure(*found), true);
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+/// What the declared sensors can know along the gap, and how many of the two forces the motion tells apart.
+void RegionPanel::compute_estimator() {
+    estimator::InformationOptions options;
+    options.noise.gap = settings().gap_noise;
+    options.noise.velocity = settings().velocity_noise;
+    options.noise.drag_relative = settings().drag_error;
+    options.drag_prior = settings().drag_error;
+    map_->show_text("…");
+    jobs_.start(
+        "region", "what the sensors can know",
+        [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+            const auto plant = estimator::separate(model, model.conditions);
+            auto known = std::make_shared<KnownAlongGap>();
+            known->information = estimator::information_along_gap(plant, options, progress);
+            known->observability = estimator::observability_along_gap(plant, known->information.gaps);
+            known->remarks = plant.remarks;
+            return [this, known, key] {
+                if (key == map_of_) {
+                    known_ = known;
+                    for (const auto& remark : known->remarks) {
+                        Q_EMIT problem(remark);
+                    }
+                    show_known();
+                }
+            };
+        },
+        false, [this] { say_when_nothing(); });
+}
+
+void RegionPanel::show_known() {
+    const auto& map = known_->information;
+    const auto& rank = known_->observability.separate_rank;
+    const auto one = std::count(rank.begin(), rank.end(), 1U);
+    about_->setText(
+        QString("The ground force is blind on %1 % of gaps and speeds: its least error is larger than itself. "
+                "The motion shows one combination of ground force and drag at %2 of %3 gaps; the law of the "
+                "drag, known to %4 %, tells them apart.")
+            .arg(map_number(100 * map.blind_share, 3))
+            .arg(one)
+            .arg(rank.size())
+            .arg(map_number(100 * settings().drag_error, 3)));
+    show_map(map.figure());
+    motion_->show_figure(map.along_gap(map.speeds[map.speeds.size() / 2]));
+}
+
+/// The motion is always that of the model and the start that stand in the state.
+void RegionPanel::compute_motion() {
+    if (motion_of_ == motion_key() || !region_) {
+        return;
+    }
+    motion_of_ = motion_key();
+    trajectory_.reset();
+    jobs_.cancel("trajectory");
+    if (!settings().start || !has_motions()) {
+        motion_->show_text(has_motions() ? "Click a start in the map to see its motion"
+                                         : "Motions are drawn over gap and heave velocity");
+        show_region();
+        return;
+    }
+    motion_->show_text("…");
+    dynamics::TrajectoryOptions options;
+    options.duration = duration();
+    options.output_step = options.duration / 3000;
+    options.escape_gap = region_->escape_gap;
+    options.stop_at_contact = true;
+    jobs_.start("trajectory", "motion",
+                [this, model = changed_model(), start = *settings().start, options,
+                 key = motion_of_](core::Progress& progress) {
+                    dynamics::InputSignals inputs;
+                    inputs.held = model.conditions;
+                    auto trajectory = std::make_shared<const dynamics::Trajectory>(
+                        dynamics::simulate(model, start[0], start[1], inputs, options, progress));
+                    return [this, trajectory, key] {
+                        if (key == motion_of_) {
+                            trajectory_ = trajectory;
+                            show_trajectory();
+                        }
+                    };
+                });
+}
+
+void RegionPanel::show_region() {
+    about_->setText(summary(*region_));
+    for (const auto& remark : region_->remarks) {
+        Q_EMIT problem(remark);
+    }
+    core::Figure figure = dynamics::region_figure(*region_);
+    if (trajectory_) {
+        overlay(figure, *region_, *trajectory_);
+    }
+    show_map(std::move(figure));
+}
+
+void RegionPanel::show_map(core::Figure figure) {
+    drawn_logarithmic_ = settings().logarithmic;
+    const core::FigureAxis& x = figure.x;
+    const bool can = x.label == "gap" && x.lower > 0 && x.upper > x.lower;
+    logarithmic_->setEnabled(can);
+    figure.x.logarithmic = can && settings().logarithmic.value_or(tables::spans_decades(x.lower, x.upper));
+    logarithmic_->setChecked(figure.x.logarithmic);
+    map_->show_figure(figure, true);
+}
+
+void RegionPanel::start_from(double x, double y) {
+    if (!region_) {
+        return;
+    }
+    const core::Figure figure = dynamics::region_figure(*region_);
+    double gap = std::nan("");
+    double velocity = 0;
+    const auto take = [&](const std::string& axis, double value, const std::string& unit) {
+        if (axis == "gap") {
+            gap = core::convert(value, unit, "m");
+        } else if (axis == "heave_velocity") {
+            velocity = core::convert(value, unit, "m/s");
+        }
+    };
+    take(region_->axes[0].name, x, figure.x.unit);
+    take(region_->axes[1].name, y, figure.y.unit);
+    if (std::isnan(gap) || !has_motions()) {
+        Q_EMIT remark("motions are drawn over gap and heave velocity");
+        return;
+    }
+    act("start=" + core::format_number(gap) + "m," + core::format_number(velocity) + "m/s");
+}
+
+void RegionPanel::show_trajectory() {
+    show_region();
+    motion_->show_figure(dynamics::trajectory_figure(*trajectory_, region_->equilibria));
+    const QString time = trajectory_->time.empty() ? QString("–") : map_number(trajectory_->time.back(), 3);
+    Q_EMIT remark(QString("from %1 mm, %2 mm/s: %3 after %4 s")
+                      .arg(map_number(1000 * trajectory_->gap.front(), 3))
+                      .arg(map_number(1000 * trajectory_->heave_velocity.front(), 3))
+                      .arg(trajectory_->end == "time" ? QString("still moving") : qt(trajectory_->end))
+                      .arg(time));
+}
+
+bool RegionPanel::has_picture() const { return map_->has_figure(); }
+
+void RegionPanel::export_picture(const std::filesystem::path& path) { map_->write(path); }
+
+bool RegionPanel::has_table() const { return trajectory_ != nullptr || known_ != nullptr; }
+
+void RegionPanel::export_table(const std::filesystem::path& path) {
+    if (known_) {
+        core::write_csv(path, known_->information.table());
+        return;
+    }
+    core::Table table = trajectory_->table();
+    table.comments.push_back("motion in the study's region '" + spec_.name + "', end: " + trajectory_->end);
+    core::write_csv(path, table);
+}
+
+}  // namespace underbody::studio

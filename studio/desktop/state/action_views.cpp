@@ -1,0 +1,200 @@
+// Actions on force tables, stability maps and what is explored.
+#include <algorithm>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "geometry/body/variants.h"
+#include "studio/desktop/state/action_parts.h"
+
+namespace underbody::studio::action {
+
+using core::UsageError;
+
+State look_at_table(State state, const Words& words, const Session& session) {
+    need(words, 2, 100, "table NAME KEY=VALUE ...");
+    std::vector<std::string> names;
+    for (const auto& table : session.study.tables) {
+        names.push_back(table.name);
+    }
+    if (std::find(names.begin(), names.end(), words[0]) == names.end()) {
+        throw UsageError("missing", "there is no table '" + words[0] + "'", {}, core::did_you_mean(words[0], names));
+    }
+    TableView& view = state.tables[words[0]];
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const auto [key, text] = assignment(words[i]);
+        if (key == "net_weight") {
+            view.net_weight = number_or_none(text, "N");
+        } else if (key == "virtual_mass") {
+            view.virtual_mass = number_or_none(text, "kg");
+            within(view.virtual_mass.value_or(0), 0, 1e9, "virtual mass (kg)");
+        } else if (key == "shown") {
+            view.shown = text;
+        } else if (key == "logarithmic") {
+            view.logarithmic = text.empty() ? std::optional<bool>() : yes_or_no(text);
+        } else if (key.starts_with("held.")) {
+            const auto* quantity = core::find_quantity(key.substr(5));
+            view.held[key.substr(5)] = core::parse_in(text, quantity != nullptr ? quantity->unit : "1");
+        } else {
+            unknown_key(key, {"net_weight", "virtual_mass", "shown", "logarithmic", "held.AXIS"});
+        }
+    }
+    return state;
+}
+
+State look_at_region(State state, const Words& words, const Session& session) {
+    need(words, 2, 100, "region NAME KEY=VALUE ...");
+    std::vector<std::string> names;
+    for (const auto& region : session.study.regions) {
+        names.push_back(region.name);
+    }
+    if (std::find(names.begin(), names.end(), words[0]) == names.end()) {
+        throw UsageError("missing", "there is no region '" + words[0] + "'", {}, core::did_you_mean(words[0], names));
+    }
+    RegionView& view = state.regions[words[0]];
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const auto [key, text] = assignment(words[i]);
+        if (key == "cells") {
+            view.cells = static_cast<int>(within(core::parse_in(text, "1"), 20, 1000, "starts a side"));
+        } else if (key == "show") {
+            const std::vector<std::string> known = {"ends", "probability", "sweep", "estimator"};
+            if (std::find(known.begin(), known.end(), text) == known.end()) {
+                unknown_key(text, known);
+            }
+            view.show = text;
+        } else if (key == "axes") {
+            if (!text.empty() && core::parse_ranges(text).size() != 2) {
+                throw UsageError("range", "a map has two axes, not those of '" + text + "'", {},
+                                 "such as gap=1mm:20mm,pitch=-3deg:3deg");
+            }
+            view.axes = text;
+            view.start.reset();
+        } else if (key == "sweep") {
+            if (!text.empty() && core::parse_ranges(text).size() != 1) {
+                throw UsageError("range", "one condition is swept, not '" + text + "'", {}, "such as speed=0.3:0.7");
+            }
+            view.sweep = text;
+        } else if (key == "steps") {
+            view.steps = static_cast<int>(within(core::parse_in(text, "1"), 2, 50, "maps of the sweep"));
+        } else if (key == "draws") {
+            view.draws = static_cast<int>(within(core::parse_in(text, "1"), 2, 1000, "draws"));
+        } else if (key == "gap_noise") {
+            view.gap_noise = within(core::parse_in(text, "m"), 1e-9, 1, "noise of the gap (m)");
+        } else if (key == "velocity_noise") {
+            view.velocity_noise =
+                text.empty() ? 0 : within(core::parse_in(text, "m/s"), 0, 10, "noise of the velocity (m/s)");
+        } else if (key == "drag_error") {
+            view.drag_error = within(core::parse_in(text, "1"), 1e-3, 10, "error of the drag law");
+        } else if (key == "logarithmic") {
+            view.logarithmic = text.empty() ? std::optional<bool>() : yes_or_no(text);
+        } else if (key == "duration") {
+            view.duration = number_or_none(text, "s");
+            within(view.duration.value_or(1), 1e-3, 1e6, "duration (s)");
+        } else if (key == "start") {
+            if (text.empty()) {
+                view.start.reset();
+                continue;
+            }
+            const auto parts = core::split(text, ',');
+            if (parts.size() != 2) {
+                throw UsageError("parse", "a start is GAP,VELOCITY", {}, "such as start=5mm,10mm/s");
+            }
+            view.start = {core::parse_in(parts[0], "m"), core::parse_in(parts[1], "m/s")};
+        } else if (key == "as_declared" && text.empty()) {
+            view.set.clear();
+        } else if (key.starts_with("set.")) {
+            if (text.empty()) {
+                view.set.erase(key.substr(4));
+            } else {
+                view.set[key.substr(4)] = core::parse_in(text, "1");
+            }
+        } else {
+            unknown_key(key, {"cells", "duration", "start", "show", "axes", "sweep", "steps", "draws", "gap_noise",
+                              "velocity_noise", "drag_error", "logarithmic", "as_declared", "set.PARAMETER"});
+        }
+    }
+    return state;
+}
+
+State explore_axes(State state, const Words& words, const Session&) {
+    need(words, 2, 2, "axes X Y");
+    state.explore.x = words[0];
+    state.explore.y = words[1];
+    return state;
+}
+
+namespace {
+/// SI unit of what is explored: a known quantity, a column of the loads, a parameter or number of a shape.
+std::string unit_of_column(const std::string& name, const Session& session) {
+    if (const auto* quantity = core::find_quantity(name)) {
+        return quantity->unit;
+    }
+    if (const auto* column = session.results.loads.find(name); column != nullptr && !column->is_text()) {
+        return column->unit;
+    }
+    for (const auto& column : geometry::variant_columns()) {
+        if (column.name == name) {
+            return column.unit;
+        }
+    }
+    for (const auto& parameter : geometry::parameter_names()) {
+        if (parameter.name == name && !parameter.unit.empty()) {
+            return parameter.unit;
+        }
+    }
+    return "1";
+}
+}  // namespace
+
+State brush(State state, const Words& words, const Session& session) {
+    need(words, 0, 100, "brush COLUMN=LOW:HIGH ...");
+    if (words.empty()) {
+        state.explore.brush.clear();
+    }
+    for (const auto& word : words) {
+        const auto [column, text] = assignment(word);
+        if (text.empty()) {
+            state.explore.brush.erase(column);
+        } else {
+            state.explore.brush[column] = range_of(text, unit_of_column(column, session).c_str());
+        }
+    }
+    return state;
+}
+
+State vary(State state, const Words& words, const Session& session) {
+    need(words, 0, 12, "vary PARAMETER=FROM:TO:COUNT ...");
+    std::vector<geometry::Vary> varied;
+    std::size_t count = 1;
+    for (const auto& word : words) {
+        varied.push_back(geometry::vary_from(word));
+        count *= varied.back().values.size();
+        const bool twice = std::count_if(varied.begin(), varied.end(),
+                                         [&](const auto& one) { return one.key == varied.back().key; }) > 1;
+        if (twice) {
+            throw UsageError("words", "'" + varied.back().key + "' is varied twice", {}, "name it once");
+        }
+    }
+    constexpr std::size_t most = 5000;  // made while somebody waits
+    if (count > most) {
+        throw UsageError("range", std::to_string(count) + " shapes are more than the window makes", {},
+                         "at most " + std::to_string(most) + "; `underbody body sweep` makes more");
+    }
+    if (!varied.empty()) {
+        static_cast<void>(shape_of(state, session, need_shape(state, session)));
+    }
+    state.explore.vary = std::move(varied);
+    state.explore.shapes = !state.explore.vary.empty();
+    return state;
+}
+
+State rows(State state, const Words& words, const Session&) {
+    need(words, 1, 1, "rows cases|shapes");
+    if (words[0] != "cases" && words[0] != "shapes") {
+        throw UsageError("unknown", "rows are cases or shapes, not '" + words[0] + "'", {},
+                         core::did_you_mean(words[0], {"cases", "shapes"}));
+    }
+    state.explore.shapes = words[0] == "shapes";
+    return state;
+}
+
+}  // namespace underbody::studio::action
