@@ -161,8 +161,7 @@ private:
         const bool pure = meaning.unit.empty() || meaning.unit == "1";
         if (!plan.has_unit && !pure && counts) {
             throw UnitMissing("column '" + plan.name + "' has no unit", place,
-                              "say it: option 'unit " + plan.name + "=" + meaning.unit + "'", plan.name,
-                              meaning.unit);
+                              "say it: option 'unit " + plan.name + "=" + meaning.unit + "'", plan.name, meaning.unit);
         }
         if (!plan.has_unit) {
             if (!pure) {
