@@ -118,7 +118,8 @@ TEST_F(WithoutUnits, AStudySaysThemForItsCases) {
 }
 
 TEST_F(WithoutUnits, AWrongUnitIsRefusedWithItsPlace) {
-    for (const char* line : {"length_unit = \"Pa\"", "length_unit = \"nonsense\"", "units = { Pressure = \"nonsense\" }"}) {
+    for (const char* line :
+         {"length_unit = \"Pa\"", "length_unit = \"nonsense\"", "units = { Pressure = \"nonsense\" }"}) {
         try {
             (void)Study::from_text(
                 std::string("title = \"t\"\n[[case]]\nfiles = \"ellipse-h{gap:mm}-p{pitch:deg}.csv\"\n") + line + "\n",
