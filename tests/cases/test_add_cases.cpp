@@ -117,6 +117,33 @@ TEST_F(WithoutUnits, AStudySaysThemForItsCases) {
     EXPECT_NEAR(small.case_loads.front().value("lift_force"), 1e-6 * lift, 1e-9 * std::abs(lift));
 }
 
+// Cases of one study that differ in their units alone are not taken for each other.
+TEST_F(WithoutUnits, EachGroupOfCasesHasItsOwn) {
+    core::write_file(folder_.path() / "small-h5-p0.csv", core::read_file(file_));
+    for (const char* name : {"ellipse", "small"}) {
+        NewCases cases;
+        cases.files = std::string(name) + "-h{gap:mm}-p{pitch:deg}.csv";
+        cases.symmetry = "y";
+        cases.length_unit = name == std::string("small") ? "mm" : "m";
+        for (const auto& unit : postproc::unstated_units(file_)) {
+            if (!unit.variable.empty()) {
+                cases.units.emplace_back(unit.variable, unit.unit);
+            }
+        }
+        write_added(with_new_cases(folder_.path(), cases));
+    }
+    RunOptions options;
+    options.pictures = false;
+    options.write_report = false;
+    for (int again = 0; again < 2; ++again) {
+        const auto results = run_study(Study::open(folder_.path()), options);
+        ASSERT_EQ(results.case_loads.size(), 2U);
+        EXPECT_EQ(results.failed, 0U);
+        const double lift = results.case_loads[0].value("lift_force");
+        EXPECT_NEAR(results.case_loads[1].value("lift_force"), 1e-6 * lift, 1e-9 * std::abs(lift));
+    }
+}
+
 TEST_F(WithoutUnits, AWrongUnitIsRefusedWithItsPlace) {
     for (const char* line :
          {"length_unit = \"Pa\"", "length_unit = \"nonsense\"", "units = { Pressure = \"nonsense\" }"}) {
