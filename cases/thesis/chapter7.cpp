@@ -117,11 +117,14 @@ void spectra(Study& study) {
                             "as printed C is not symmetric (by " + number((c - c.transposed()).largest()) +
                                 ", column 7); its symmetric part has " + numbers(first, 5),
                             "in part"});
+    const auto decimals = [](double value) { return std::round(1e5 * value) / 1e5; };  // as printed
     const Matrix t = printed_basis();
     const Matrix of_t = (t.block(5, 0, 4, 5) * pseudo_inverse(t.block(0, 0, 5, 5), 1e-6)).block(0, 1, 4, 4);
     study.claims.push_back({"7-T", "basis of section 7.5", "The model A that follows from the printed T",
                             "entries (w,w), (w,F_d), (h,w), (F_g,w), (F_g,F_g) of W S^# are " +
-                                numbers({of_t(0, 0), of_t(0, 2), of_t(1, 0), of_t(2, 0), of_t(2, 2)}, 5) +
+                                numbers({decimals(of_t(0, 0)), decimals(of_t(0, 2)), decimals(of_t(1, 0)),
+                                         decimals(of_t(2, 0)), decimals(of_t(2, 2))},
+                                        5) +
                                 "; the printed matrix follows from them but for the ratios of deviations",
                             "in part"});
     // One factor on rows 1, 2 and 4 between 7.48 and the exact least-norm split.
