@@ -110,6 +110,23 @@ struct State {
     double t = 0, h = 0, w = 0, u = 0;
 };
 
+/// Whether an effect acts on the pitch, of which the whole body knows nothing.
+bool acts_on_pitch(const HeavePlant& plant) {
+    const PitchTerms& terms = plant.terms.pitch;
+    double up = 0, turn = 0;
+    terms.add_loads(0.02, 0.1, 0.2, 0.3, 0.04, up, turn);
+    return up != 0 || turn != 0 || terms.inertia != 0 || terms.mass_forward != 0;
+}
+
+void expect_refused_by_the_whole_body(const Model& model, const std::string& who) {
+    try {
+        const RigidBody body(model);
+        ADD_FAILURE() << who << " is left out of the motion of the whole body in silence";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr(model.effects.back().name));
+    }
+}
+
 /// dw/dt of the coupled motions in pure heave, and what the run over the ground presses.
 void expect_coupled(const Model& model, const std::string& who, const State& s) {
     const HeavePlant plant(model);
@@ -118,17 +135,23 @@ void expect_coupled(const Model& model, const std::string& who, const State& s) 
     around.t = s.t;
     around.input = s.u;
     PitchState pitch_rate{};
-    HeavePitch(model).rate({s.h, s.w, 0, 0}, ContactState::free, pitch_rate, around);
-    // The moments turn the body, and its base is under its centre: the rise of both is that of heave.
-    EXPECT_NEAR(pitch_rate[1], a, 1e-12 * size) << who << ", heave and pitch";
+    const HeavePitch pitch(model);
+    pitch.rate({s.h, s.w, 0, 0}, ContactState::free, pitch_rate, around);
+    // The moments turn the body about its centre of gravity, whose rise is that of heave; so is the base's where it
+    // lies under that.
+    EXPECT_NEAR(pitch_rate[1] - pitch.arm(0) * pitch_rate[3], a, 1e-12 * size) << who << ", heave and pitch";
 
-    const RigidBody body(model);
-    BodyState y{}, rate{};
-    y[state_u] = model.conditions[Channel::speed];
-    y[state_w] = -s.w;
-    y[state_z] = body.height_for_gap(s.h, 0);
-    body.rate(y, {}, ContactState::free, rate, around);
-    EXPECT_NEAR(-rate[state_w], a, 1e-12 * size) << who << ", the whole body";
+    if (acts_on_pitch(plant)) {
+        expect_refused_by_the_whole_body(model, who);
+    } else {
+        const RigidBody body(model);
+        BodyState y{}, rate{};
+        y[state_u] = model.conditions[Channel::speed];
+        y[state_w] = -s.w;
+        y[state_z] = body.height_for_gap(s.h, 0);
+        body.rate(y, {}, ContactState::free, rate, around);
+        EXPECT_NEAR(-rate[state_w], a, 1e-12 * size) << who << ", the whole body";
+    }
 
     const SurfaceMotion ground(model);
     const double touching = plant.contact_gap(), mass = mass_at(plant, touching);
@@ -181,6 +204,10 @@ void expect_static(const Model& model, const EffectUse& use, const std::string& 
     }
     EXPECT_NEAR(seen_lift, lift, 1e-12) << who << ", heave and pitch";
     EXPECT_NEAR(seen_moment, moment, 1e-12) << who << ", heave and pitch";
+    if (acts_on_pitch(plant)) {
+        expect_refused_by_the_whole_body(model, who);
+        return;
+    }
     const RigidBody body(model);
     BodyState y{};
     y[state_u] = model.conditions[Channel::speed];
