@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/model.h"
@@ -133,6 +134,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     dynamics::Conditions held;
     for (const auto& v :
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
@@ -198,7 +200,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
         std::string text;
         const nlohmann::json list = compare_estimators(a, plant, law, o, text);
         if (shell.json) {
-            shell.print_json({{"estimators", list}});
+            shell.print_json({{"estimators", list}, {"warnings", warnings}});
         }
         shell.print(text);
         return ExitCode::done;
@@ -217,6 +219,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
         write_picture(figure_of(loop, law.reference_gap), a.plot);
     }
     nlohmann::json json = loop;
+    json["warnings"] = warnings;
     json["velocity_gain"] = law.velocity_gain;
     json["gap_gain"] = law.gap_gain;
     nlohmann::json points = nlohmann::json::array();

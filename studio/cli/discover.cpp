@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/discovery/discovery.h"
@@ -269,6 +270,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
             (void)estimator::export_format_of(name);
         }
         const dynamics::Model model = dynamics::read_model(arguments->model);
+        const std::vector<std::string> warnings = show_table_warnings(shell, model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
         discovery::DiscoverOptions options;
         options.horizon = core::parse_in(arguments->horizon, "s");
@@ -284,7 +286,9 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         again += export_again(found, model, *arguments, shell);
         discovery::write_discovery(found, model, data, arguments->out, renderer);
         if (shell.json) {
-            shell.print_json(discovery::to_json(found));
+            nlohmann::json json = discovery::to_json(found);
+            json["warnings"] = warnings;
+            shell.print_json(json);
         }
         print(shell, found, arguments->out);
         shell.print(again);

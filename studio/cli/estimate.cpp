@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -111,6 +112,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
     shell.remark(data.problems);
     estimator::EstimateOptions options = a.options;
@@ -151,6 +153,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
     }
     if (shell.json) {
         nlohmann::json json = result;
+        json["warnings"] = warnings;
         if (!a.surfaces.empty()) {
             json["surfaces"] = surfaces;
         }

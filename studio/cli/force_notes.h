@@ -2,6 +2,8 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "surrogates/dynamics/model/model.h"
 
@@ -12,5 +14,9 @@ class Shell;
 /// Prints how each force of the model was fitted, and a warning for each condition that is held outside a table; the
 /// same as `forces` and `warnings` in the JSON. `held`: what is given over the model's conditions.
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json);
+
+/// Prints the warnings of the model's force tables alone (points that have not settled, outliers, ...) and returns
+/// them for `warnings` of the JSON: for commands whose numbers rest on the tables and that do not show the fits.
+std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model);
 
 }  // namespace underbody::studio

@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -372,6 +373,7 @@ int run_learn(const LearnArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model declared = dynamics::read_model(a.model);
+    const std::vector<std::string> warnings = show_table_warnings(shell, declared);
     LearnOptions options;
     options.order = a.order;
     // An order asks for the thesis's truncated model; without one, for the best linear law.
@@ -388,7 +390,8 @@ int run_learn(const LearnArguments& a, Shell& shell) {
     const Learned learned = learn_model(a, declared, options, shell);
     shell.show(learned.remarks);
     shell.show(learned.model.remarks);
-    const nlohmann::json json = describe(learned, options, a.scan, by_snapshots(a));
+    nlohmann::json json = describe(learned, options, a.scan, by_snapshots(a));
+    json["warnings"] = warnings;
     if (!a.out.empty()) {
         core::write_file(a.out, json.dump(2) + "\n");
     }

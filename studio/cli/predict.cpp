@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/force_notes.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 
@@ -29,6 +30,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
     dynamics::PredictOptions options;
     options.horizon = core::parse_in(a.horizon, "s");
@@ -44,6 +46,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     if (shell.json) {
         nlohmann::json json;
         dynamics::to_json(json, prediction);
+        json["warnings"] = warnings;
         shell.print_json(json);
     }
     std::string text;

@@ -83,6 +83,45 @@ TEST_F(SettledCommands, AStudySaysItInListReportAndTables) {
     EXPECT_THAT(run({"study", "run", "study", "--no-pictures"}).output, Not(HasSubstr("not settled")));
 }
 
+TEST_F(SettledCommands, WhatRestsOnForceTablesSaysItInTextAndJson) {
+    core::write_file(folder.path() / "lift.csv",
+                     "gap [mm], lift_force [N], lift_force_sigma [N], settled\n5, 1, 0.01, settled\n"
+                     "6, 0.9, 0.01, not settled\n7, 0.82, 0.01, settled\n8, 0.77, 0.01, settled\n"
+                     "9, 0.73, 0.01, settled\n10, 0.70, 0.01, settled\n12, 0.66, 0.01, settled\n"
+                     "15, 0.62, 0.01, settled\n");
+    core::write_file(folder.path() / "model.toml",
+                     "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.7 kg\"\nnet_weight = \"0.8 N\"\n"
+                     "[drag.heave]\nquadratic = \"6 N s^2/m^2\"\n"
+                     "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    for (const char* number : {"1", "2", "3"}) {
+        ASSERT_EQ(run({"simulate", "model.toml", "--from", "gap=" + std::string(number) + "1mm", "--for", "3", "--step",
+                       "20ms", "--out", "data/run-" + std::string(number) + ".csv"})
+                      .exit_code,
+                  0);
+    }
+    core::write_file(folder.path() / "data" / "dataset.toml",
+                     "kind = \"time_series\"\n[noise]\ngap = \"0.05 mm\"\n[[run]]\nfile = \"run-1.csv\"\n"
+                     "[[run]]\nfile = \"run-2.csv\"\n[[run]]\nfile = \"run-3.csv\"\n");
+    // Free runs: their column of input is nought all along, and no law of it may be looked for.
+    const std::string sentence = "1 of the 8 points are of solutions that have not settled: row 2";
+    for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
+             {"predict", "model.toml", "--data", "data"},
+             {"estimate", "model.toml", "--data", "data"},
+             {"learn", "model.toml"},
+             {"control", "model.toml", "--hold", "8mm", "--from", "gap=9mm", "--for", "2"},
+             {"discover", "model.toml", "--data", "data", "--out", "found", "--candidates", "constant_force"}}) {
+        const auto text = run(words);
+        EXPECT_EQ(text.exit_code, 0) << text.errors;
+        EXPECT_THAT(text.output, HasSubstr("warning: ")) << words[0];
+        EXPECT_THAT(text.output, HasSubstr(sentence)) << words[0];
+        EXPECT_THAT(text.errors, Not(HasSubstr(sentence))) << words[0];
+        words.insert(words.end(), {"--json", "--force"});
+        const auto document = run(words);
+        ASSERT_EQ(document.exit_code, 0) << document.errors;
+        EXPECT_THAT(json::parse(document.output).at("warnings").dump(), HasSubstr(sentence)) << words[0];
+    }
+}
+
 TEST_F(SettledCommands, InitialValuesAndDivergedFieldsAreNoSolutions) {
     fs::copy(data_folder() / "openfoam" / "ascii", folder.path() / "case", fs::copy_options::recursive);
     fs::remove_all(folder.path() / "case" / "0.0025");

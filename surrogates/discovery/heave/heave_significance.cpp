@@ -69,6 +69,18 @@ std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
     return steps;
 }
 
+/// Of an input that never changes (free runs with a column of noughts) no law can be seen.
+bool input_changes(const HeaveRecords& records) {
+    double low = INFINITY, high = -INFINITY;
+    for (const HeaveRecord& record : records.records) {
+        for (const double u : record.raw_input) {
+            low = std::min(low, u);
+            high = std::max(high, u);
+        }
+    }
+    return high > low;
+}
+
 }  // namespace
 
 std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experiment,
@@ -88,10 +100,10 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
             }
         }
     }
+    const bool input_moves = records_.input_recorded && input_changes(records_);
     for (const HeaveExperiment::SmoothSet& set : smooth_sets()) {
-        const bool possible = std::none_of(set.variables.begin(), set.variables.end(), [&](Variable v) {
-            return v == Variable::input_force && !records_.input_recorded;
-        });
+        const bool possible = std::none_of(set.variables.begin(), set.variables.end(),
+                                           [&](Variable v) { return v == Variable::input_force && !input_moves; });
         if (possible) {
             list.emplace_back();
             list.back().smooth = &set;
