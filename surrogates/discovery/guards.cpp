@@ -193,6 +193,17 @@ bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas) {
     });
 }
 
+std::size_t best_finding(const std::vector<FittedHypothesis>& found, std::size_t names, double sigmas) {
+    std::size_t best = found.size();
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        if (differs_from_neutral(found[k], sigmas) && found[k].hypothesis.names.size() == names &&
+            (best == found.size() || found[k].score() < found[best].score())) {
+            best = k;
+        }
+    }
+    return best;
+}
+
 void cap_probabilities(Attribution& attribution, double most) {
     double largest = attribution.unknown_probability;
     for (const Attribution::Share& share : attribution.shares) {

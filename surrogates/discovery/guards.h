@@ -58,6 +58,10 @@ double sigmas_after_scan(double sigmas);
 /// from there together.
 bool differs_from_neutral(const FittedHypothesis& fitted, double sigmas);
 
+/// Index of the least score among the hypotheses of so many names that differ from neutral; their number where none
+/// does.
+std::size_t best_finding(const std::vector<FittedHypothesis>& found, std::size_t names, double sigmas);
+
 /// Lowers all probabilities of names (and of `unknown`) so that none is above `most`; what they lose goes to "none".
 void cap_probabilities(Attribution& attribution, double most);
 

@@ -78,6 +78,15 @@ std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHyp
     return parts;
 }
 
+std::string evidence_of_runs(const FittedHypothesis& one) {
+    const auto helped =
+        std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
+    return "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
+           std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
+           std::to_string(one.explained_by_group.size()) + " runs" +
+           (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
+}
+
 namespace {
 
 FoundEffect unknown_effect(double probability, const std::vector<std::string>& depends_on) {

@@ -19,6 +19,9 @@ FoundEffect found_effect(const FittedHypothesis& fitted, double probability);
 /// One finding per name, each with its own parameters, uses and share.
 std::vector<FoundEffect> split_by_name(const FoundEffect& whole, const FittedHypothesis& fitted);
 
+/// What speaks for a hypothesis that was fitted to runs in time: the fall of the likelihood, and in how many runs.
+std::string evidence_of_runs(const FittedHypothesis& one);
+
 /// All that a pipeline knows once it has judged.
 struct Judgement {
     const std::vector<FittedHypothesis>& fitted;

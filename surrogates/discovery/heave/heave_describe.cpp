@@ -55,15 +55,6 @@ void HeaveLoop::measure_error() {
                                               : estimator_error(test, uses_, after_noise_, uses_, after_noise_);
 }
 
-std::string HeaveLoop::evidence(const FittedHypothesis& one) {
-    const auto helped =
-        std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
-    return "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
-           std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
-           std::to_string(one.explained_by_group.size()) + " runs" +
-           (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
-}
-
 void HeaveLoop::describe() {
     const bool coloured = null_noise_.slow > 0;
     result_.noise["gap"] = {
@@ -79,7 +70,7 @@ void HeaveLoop::describe() {
                                            records_.velocity_noise};
     }
     result_.stability = stability();
-    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence,
+    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence_of_runs,
           [&](const FittedHypothesis& chosen, const FittedHypothesis& rival) {
               return heave_told_apart(*experiment_, chosen, rival);
           }},

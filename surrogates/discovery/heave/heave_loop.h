@@ -129,7 +129,6 @@ private:
     // heave_describe.cpp
     void measure_error();
     void describe();
-    [[nodiscard]] static std::string evidence(const FittedHypothesis& one);
     void check_excitation();
     void check_runs_agree();
     bool runs_agree_on(std::size_t index);

@@ -142,14 +142,7 @@ void HeaveLoop::fit_further() {
                 noises[k] = result.noise;
             },
             progress_);
-        std::size_t best = found.size();
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            if (differs_from_neutral(found[k], calibration_.neutral_sigmas) &&
-                found[k].hypothesis.names.size() == count &&
-                (best == found.size() || found[k].score() < found[best].score())) {
-                best = k;
-            }
-        }
+        const std::size_t best = best_finding(found, count, calibration_.neutral_sigmas);
         // each has to bring as much as a second one must
         const double before = null_cost_ - fitted_[base].cost;
         if (best == found.size() || fitted_[base].score() - found[best].score() <

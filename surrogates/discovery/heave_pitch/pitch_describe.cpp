@@ -85,15 +85,6 @@ void PitchLoop::measure_axes() {
     }
 }
 
-std::string PitchLoop::evidence(const FittedHypothesis& one) {
-    const auto helped =
-        std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
-    return "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
-           std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
-           std::to_string(one.explained_by_group.size()) + " runs" +
-           (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
-}
-
 /// Share of resampled runs in which the chosen names have the least score.
 double PitchLoop::stability() const {
     if (result_.verdict != "effect") {
@@ -140,7 +131,7 @@ void PitchLoop::describe() {
             dynamics::pitch_noise(data_, data_.runs[experiment_->records().front().run])[i]};
     }
     result_.stability = stability();
-    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth load", evidence,
+    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth load", evidence_of_runs,
           [](const FittedHypothesis&, const FittedHypothesis& rival) {
               return "runs in which " + list_of(rival.hypothesis.depends_on) + " is excited apart from the rest";
           }},

@@ -86,7 +86,6 @@ private:
     void measure_error();
     void measure_axes();
     void describe();
-    [[nodiscard]] static std::string evidence(const FittedHypothesis& one);
     [[nodiscard]] Consequence consequence() const;
     [[nodiscard]] double stability() const;
 

@@ -217,14 +217,7 @@ void PitchLoop::fit_further() {
                 noises[k] = result.noise;
             },
             progress_);
-        std::size_t best = found.size();
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            if (differs_from_neutral(found[k], calibration_.neutral_sigmas) &&
-                found[k].hypothesis.names.size() == count &&
-                (best == found.size() || found[k].score() < found[best].score())) {
-                best = k;
-            }
-        }
+        const std::size_t best = best_finding(found, count, calibration_.neutral_sigmas);
         if (best == found.size()) {
             return;
         }
