@@ -1,4 +1,6 @@
 // Compare: pictures in the place of surfaces: differences to the first, planes, streamlines.
+#include <QComboBox>
+#include <QLabel>
 #include <algorithm>
 
 #include "core/error.h"
