@@ -212,12 +212,18 @@ TEST(Lock, OfAResultIsHeldByOneAtATimeAndForEachResultByItselfAndLeavesNoFile) {
     EXPECT_TRUE(lock_of_result(store, "loads", "b", progress));
     std::atomic<bool> got{false};
     std::string said;
-    core::Progress told([&](double, const std::string& what) { said = what; });
+    std::atomic<bool> waits{false};
+    core::Progress told([&](double, const std::string& what) {
+        said = what;
+        waits = true;
+    });
     std::thread other([&] {
         const auto second = lock_of_result(store, "loads", "a", told);
         got = second.has_value();
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    while (!waits) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     EXPECT_FALSE(got);
     first.reset();
     other.join();

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -183,6 +184,20 @@ pid_t start_run(const fs::path& study) {
     return child;
 }
 
+/// Whether the process has come so far that Ctrl-C is its own affair; a process that has ended is none that will.
+bool catches_interrupts(pid_t process) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("State:") && line.find('Z') != std::string::npos) {
+            return true;
+        }
+        if (line.starts_with("SigCgt:")) {
+            return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
+        }
+    }
+    return true;
+}
+
 json results_of(const ProgramRun& run) {
     json all = json::parse(run.output);
     return all.at("results");
@@ -355,7 +370,10 @@ TEST_F(StudyCommand, CtrlCEndsWithOneHundredAndThirty) {
     text.replace(text.find("columns = 40\nrows = 40"), 22, "columns = 4000\nrows = 4000");
     core::write_file(study / "study.toml", text);
     const pid_t child = start_run(study);
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    while (!catches_interrupts(child)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
     ::kill(child, SIGINT);
     int status = 0;
     ::waitpid(child, &status, 0);

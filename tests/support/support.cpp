@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <ctime>
 
 #include "core/file.h"
 
@@ -21,6 +22,12 @@ fs::path shared_folder() {
         return set;
     }
     return source_folder().parent_path() / "shared";
+}
+
+double processor_seconds() {
+    timespec used{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
 }
 
 ProgramRun run_underbody(const std::vector<std::string>& arguments, const fs::path& folder,

@@ -38,4 +38,7 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
                        const std::filesystem::path& folder = {},
                        const std::map<std::string, std::string>& environment = {});
 
+/// Processor time of this process so far, all threads, in seconds: what a machine that does other work does not change.
+double processor_seconds();
+
 }  // namespace underbody::test

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include "core/file.h"
@@ -37,6 +39,8 @@ private:
 struct Read {
     std::vector<double> time, value;
     core::Problems problems;
+    std::shared_ptr<std::atomic<std::size_t>> count =
+        std::make_shared<std::atomic<std::size_t>>(0);  ///< readings so far
 };
 
 class KeepingSink : public ChannelSink {
@@ -45,6 +49,7 @@ public:
     void reading(std::size_t channel, double time, double value) override {
         into_.time.push_back(time);
         into_.value.push_back(value + 1000 * static_cast<double>(channel));
+        *into_.count = into_.time.size();
     }
 
 private:
@@ -145,12 +150,16 @@ TEST(GrowingStream, WaitsForWhatIsAdded) {
     core::Progress progress;
     Read found;
     std::thread writer([&] {
-        const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(150)); };
-        pause();
+        const auto until_read = [&](std::size_t count) {
+            while (*found.count < count) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            }
+        };
+        until_read(1);
         std::ofstream(file, std::ios::app) << "5\n2, 3\n3,";  // the line that was begun is 1, 25
-        pause();
+        until_read(3);
         std::ofstream(file, std::ios::app) << " 4\n";
-        pause();
+        until_read(4);
         progress.cancel();
     });
     GrowingStream stream(file.string(), true, progress);
