@@ -1,24 +1,11 @@
-// Sweeps through a real Slurm: one node, two slots, started by tests/slurm/start for these tests and ended with them.
-// The solver is the stand-in. Skipped, saying why, where Slurm cannot be started.
-#include <fcntl.h>
-#include <gmock/gmock.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
+// Sweeps through a real Slurm. The solver is the stand-in.
 #include <chrono>
-#include <cstdlib>
-#include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <thread>
 
 #include "core/file.h"
 #include "core/text.h"
-#include "tests/studio/stand_in_solver.h"
-#include "tests/support/support.h"
+#include "tests/studio/real_slurm.h"
 
 namespace underbody {
 namespace {
@@ -26,159 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
-
-/// Arrays of at most two tasks: indices end below MaxArraySize.
-constexpr const char* max_array_size = "3";
-
-class RealSlurm : public testing::Test {
-protected:
-    static void SetUpTestSuite() {
-        slurm_ = std::make_unique<core::TemporaryFolder>();
-        const fs::path said = slurm_->path() / "said";
-        starter_ = ::fork();
-        if (starter_ == 0) {
-            ::setenv("UNDERBODY_SLURM_ARRAY", max_array_size, 1);
-            ::dup2(::open(said.c_str(), O_WRONLY | O_CREAT, 0644), 1);
-            ::dup2(1, 2);
-            const std::string script = (test::source_folder() / "tests" / "slurm" / "start").string();
-            const std::string folder = (slurm_->path() / "slurm").string();
-            ::execl("/bin/bash", "bash", script.c_str(), folder.c_str(), nullptr);
-            ::_exit(77);
-        }
-        for (int i = 0; i < 400 && reason_.empty(); ++i) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-            const std::string text = fs::exists(said) ? core::read_file(said) : "";
-            if (text.find("ready") != std::string::npos) {
-                return;
-            }
-            if (::waitpid(starter_, nullptr, WNOHANG) == starter_) {
-                starter_ = -1;
-                reason_ = text.empty() ? "tests/slurm/start does not run" : text;
-            }
-        }
-        reason_ = reason_.empty() ? "Slurm does not start within 40 s" : reason_;
-    }
-    static void TearDownTestSuite() {
-        if (starter_ > 0) {
-            ::kill(starter_, SIGTERM);
-            ::waitpid(starter_, nullptr, 0);
-        }
-        starter_ = -1;
-        slurm_.reset();
-    }
-    void SetUp() override {
-        if (!reason_.empty()) {
-            GTEST_SKIP() << "skipped: no Slurm: " << reason_;
-        }
-        test::write_stand_in_solver(folder_.path() / "bin");
-        write_study("study");
-        hook("sleep 0.1");
-    }
-    void TearDown() override {
-        if (reason_.empty()) {  // nothing of this test runs on into the next
-            slurm("scancel", {"--user=root"});
-            wait_for([&] { return slurm("squeue", {"--noheader"}).output.empty(); });
-        }
-    }
-
-    void write_study(const std::string& name, const std::string& gaps = "[\"5 mm\", \"10 mm\"]") {
-        fs::create_directories(folder_.path() / name);
-        fs::copy_file(test::source_folder() / "cases" / "evie" / "shapes" / "ellipse.toml",
-                      folder_.path() / name / "ellipse.toml", fs::copy_options::overwrite_existing);
-        core::write_file(folder_.path() / name / "study.toml",
-                         "title = \"a sweep\"\n[frame]\nsymmetry = \"y\"\n[reference]\ndensity = \"998 "
-                         "kg/m^3\"\n[[body]]\nname = \"ellipse\"\nshape = \"ellipse.toml\"\n[sweep]\ngap = " +
-                             gaps +
-                             "\npitch = \"1 deg\"\nspeed = \"0.5 m/s\"\nconditions = { mesh = \"coarse\" }\n"
-                             "mesher = \"snappy\"\niterations = 40\n");
-    }
-    void hook(const std::string& script) { core::write_file(folder_.path() / "hook", script + "\n"); }
-    [[nodiscard]] fs::path runs() const { return folder_.path() / "study" / "runs"; }
-    [[nodiscard]] std::map<std::string, std::string> environment() const {
-        const char* path = std::getenv("PATH");
-        return {{"PATH", (folder_.path() / "bin").string() + ":" + (path != nullptr ? path : "/usr/bin:/bin")},
-                {"HOOK", (folder_.path() / "hook").string()},
-                {"SLURM_CONF", (slurm_->path() / "slurm" / "slurm.conf").string()}};
-    }
-    test::ProgramRun run(const std::vector<std::string>& arguments) {
-        return test::run_underbody(arguments, folder_.path(), environment());
-    }
-    test::ProgramRun slurm(const std::string& program, const std::vector<std::string>& arguments) {
-        for (const char* where : {"/usr/bin", "/usr/local/bin"}) {
-            if (fs::exists(fs::path(where) / program)) {
-                return test::run_program((fs::path(where) / program).string(), arguments, folder_.path(),
-                                         environment());
-            }
-        }
-        return {127, "", program + " is not here"};
-    }
-    /// Number of the (last) job.
-    std::string submit() {
-        const auto submitted = run({"sweep", "study", "--engine", "slurm", "--json"});
-        EXPECT_EQ(submitted.exit_code, 0) << submitted.errors;
-        return submitted.exit_code == 0 ? json::parse(submitted.output).value("job", "") : "";
-    }
-    std::map<std::string, std::string> states() {
-        const auto listed = run({"sweep", "study", "--list", "--json"});
-        EXPECT_EQ(listed.exit_code, 0) << listed.errors;
-        std::map<std::string, std::string> states;
-        const json told = json::parse(listed.output);
-        for (const auto& one : told.at("cases")) {
-            states[one.at("name")] = one.at("state");
-        }
-        return states;
-    }
-    [[nodiscard]] static std::size_t count(const std::map<std::string, std::string>& states, const std::string& state) {
-        return static_cast<std::size_t>(
-            std::count_if(states.begin(), states.end(), [&](const auto& one) { return one.second == state; }));
-    }
-    static bool wait_for(const std::function<bool()>& done, int seconds = 60) {
-        for (int i = 0; i < 5 * seconds; ++i) {
-            if (done()) {
-                return true;
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(200));
-        }
-        return false;
-    }
-    void expect_all_solved(std::size_t cases) {
-        EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == cases; }))
-            << json(states()) << slurm("squeue", {}).output;
-        for (const auto& entry : fs::directory_iterator(runs())) {
-            EXPECT_NE(entry.path().extension(), ".submitted") << entry.path();
-        }
-    }
-    /// How often the mesher ran in a case.
-    [[nodiscard]] std::size_t meshed(const std::string& name) const {
-        const fs::path file = runs() / name / "meshed";
-        return fs::exists(file) ? core::split(core::trimmed(core::read_file(file)), '\n').size() : 0;
-    }
-
-    core::TemporaryFolder folder_;
-
-private:
-    static std::unique_ptr<core::TemporaryFolder> slurm_;
-    static pid_t starter_;
-    static std::string reason_;
-};
-
-std::unique_ptr<core::TemporaryFolder> RealSlurm::slurm_;
-pid_t RealSlurm::starter_ = -1;
-std::string RealSlurm::reason_;
-
-/// Every file of a solved case that is no log, and its marker but for the seconds that it took.
-std::map<std::string, std::string> results_below(const fs::path& folder) {
-    std::map<std::string, std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        const std::string name = entry.path().lexically_relative(folder).string();
-        if (entry.is_regular_file() && name.find("log") == std::string::npos && !name.starts_with(".")) {
-            const std::string bytes = core::read_file(entry.path());
-            static const std::regex taken("\"seconds\": [^,\n]*");
-            files[name] = entry.path().filename() == "case.foam" ? std::regex_replace(bytes, taken, "") : bytes;
-        }
-    }
-    return files;
-}
 
 TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
     const std::string job = submit();
