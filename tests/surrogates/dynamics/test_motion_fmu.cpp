@@ -677,6 +677,31 @@ TEST(MotionFmu, UnderWindowsMovesAsHere) {
     }
 }
 
+TEST(MotionFmu, UnderWindowsDelaysTheInputForceAsHere) {
+    UNDERBODY_NEEDS_WINE();
+    const double step = 0.02;
+    LoadedMotion motion(late_model(0.0731), FmuMotion::heave, {0.1, 0});
+    const std::string force = std::to_string(motion.reference("input_force")),
+                      gap = std::to_string(motion.reference("gap"));
+    const std::vector<double> given = commands(2000, 29);
+    std::string lines;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        lines += "set 1 " + force + " " + core::format_number(given[i]) + "\nstep " +
+                 core::format_number(step * static_cast<double>(i)) + " " + core::format_number(step) + "\nget 1 " +
+                 gap + "\n";
+    }
+    const std::vector<double> out =
+        underbody::test::called_under_wine(motion.entries.at("binaries/win64/motion.dll"), motion.guid(), lines);
+    ASSERT_EQ(out.size(), given.size());
+    motion.begin(1, 1e-10);
+    motion.started();
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        motion.set("input_force", given[i]);
+        motion.step(step * static_cast<double>(i), step);
+        ASSERT_NEAR(out[i], motion.get("gap"), 1e-10) << "step " << i;
+    }
+}
+
 TEST(MotionFmu, SaysWhatItCannotCarry) {
     core::TemporaryFolder folder;
     MotionFmuOptions options;
