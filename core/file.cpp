@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/inputs.h"
+#include "core/missing_file.h"
 #include "core/own_files.h"
 
 namespace underbody::core {
@@ -39,6 +40,8 @@ private:
     int value_;
 };
 
+}  // namespace
+
 std::string hint_for_missing(const fs::path& path) {
     std::error_code ignored;
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -52,6 +55,8 @@ std::string hint_for_missing(const fs::path& path) {
     const std::string near = nearest_name(path.filename().string(), names);
     return near.empty() ? std::string() : "did you mean '" + near + "'?";
 }
+
+namespace {
 
 fs::path temporary_name(const fs::path& target) {
     static std::atomic<unsigned> counter{0};

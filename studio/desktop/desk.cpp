@@ -125,16 +125,19 @@ void Desk::follow_state() {
 
 void Desk::open_study(const fs::path& folder) { open(folder, false); }
 
-void Desk::open_and_run(const fs::path& folder) { open(folder, true); }
+void Desk::open_and_run(const fs::path& folder, const std::vector<Words>& then) { open(folder, true, then); }
 
-void Desk::open(const fs::path& folder, bool run) {
+void Desk::open(const fs::path& folder, bool run, const std::vector<Words>& then) {
     const QString name = qt(folder.string());
-    jobs_.start("open", "opening " + name, [this, folder, name, run, files = state().files](core::Progress&) {
+    jobs_.start("open", "opening " + name, [this, folder, name, run, then, files = state().files](core::Progress&) {
         auto session = open_session(folder, files);
-        return [this, session, name, run] {
+        return [this, session, name, run, then] {
             take_session(session);
             if (!run || state().study != session->folder.string()) {  // what the open one shows is kept
                 act({"open", session->folder.string()});
+            }
+            for (const auto& words : then) {
+                act(words);
             }
             Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
             if (run) {
@@ -247,14 +250,17 @@ void Desk::save_session_file(const fs::path& file) {
     Q_EMIT noted("Saved the session as " + qt(file.string()));
 }
 
-void Desk::replay_log(const fs::path& file) {
-    jobs_.start("open", "replaying " + qt(file.string()), [this, file](core::Progress&) {
+void Desk::replay_log(const fs::path& file, const fs::path& start) {
+    jobs_.start("open", "replaying " + qt(file.string()), [this, file, start](core::Progress&) {
         auto history = std::make_shared<History>();
         SessionPointer session = open_session({});
         std::exception_ptr error;
         try {
-            replay(core::read_file(file), file.string(), *history, session,
-                   [&](const State& state) { return load_session(state, session); });
+            const auto load = [&](const State& state) { return load_session(state, session); };
+            if (!start.empty()) {
+                start_with(start, *history, session, load);
+            }
+            replay(core::read_file(file), file.string(), *history, session, load);
         } catch (...) {
             error = std::current_exception();  // what came before the wrong line is kept
         }

@@ -38,15 +38,16 @@ public:
 
     /// Opens a study in a job, then acts.
     void open_study(const std::filesystem::path& folder);
-    /// The same, then computes it.
-    void open_and_run(const std::filesystem::path& folder);
+    /// The same, then carries out these actions and computes it.
+    void open_and_run(const std::filesystem::path& folder, const std::vector<Words>& then = {});
     /// Reads the study and its store again. While it is computed: at the end of that.
     void reload();
     /// Computes what changed; what is stored is shown as it comes, also of a run that is cancelled or fails.
     void run_study();
     [[nodiscard]] bool computing() const { return jobs_.busy("run"); }
-    /// Carries out the lines of a log, from an empty state.
-    void replay_log(const std::filesystem::path& file);
+    /// Carries out the lines of a log, from an empty state, or from what `start` is: a study, a session, a shape, a
+    /// CFD file.
+    void replay_log(const std::filesystem::path& file, const std::filesystem::path& start = {});
     void open_session_file(const std::filesystem::path& file);
     void save_session_file(const std::filesystem::path& file);
 
@@ -62,7 +63,7 @@ Q_SIGNALS:
     void acted(const QString& line, const QString& command);
 
 private:
-    void open(const std::filesystem::path& folder, bool run);
+    void open(const std::filesystem::path& folder, bool run, const std::vector<Words>& then = {});
     void take_session(const SessionPointer& session);
     /// Gets the session that the state names.
     void follow_state();

@@ -10,6 +10,7 @@
 #include <QSignalBlocker>
 #include <algorithm>
 
+#include "core/error.h"
 #include "core/text.h"
 #include "postproc/field/lists.h"
 #include "postproc/loads/body_zones.h"
@@ -207,6 +208,40 @@ void FieldsPanel::fill_controls() {
         range_->setText(range ? qt(core::format_number((*range)[0]) + ":" + core::format_number((*range)[1])) : "");
         range_->setModified(false);
     }
+}
+
+/// Names of arrays and zones are those of the files: what none of them has is said once they are read.
+void FieldsPanel::check_names() {
+    const FieldView& view = state().fields;
+    const bool reading = std::any_of(cells_.begin(), cells_.end(), [](const auto& cell) {
+        return !cell->source.id.empty() && !cell->ready && cell->failed.isEmpty();
+    });
+    if (reading || first_ready() == nullptr) {
+        return;
+    }
+    const auto look_for = [this](const std::string& name, const std::vector<std::string>& known, const char* what) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            Q_EMIT desk_.refused("fields", std::make_exception_ptr(core::UsageError(
+                                               "missing", std::string("no file that is shown has ") + what + name + "'",
+                                               {}, core::did_you_mean(name, known))));
+        }
+    };
+    std::vector<std::string> arrays, zones;
+    for (int i = 0; i < array_->count(); ++i) {
+        arrays.push_back(array_->itemText(i).toStdString());
+    }
+    for (int i = 0; i < zones_->count(); ++i) {
+        zones.push_back(zones_->item(i)->text().toStdString());
+    }
+    if (view.array != checked_.array) {
+        look_for(view.array, arrays, "an array '");
+    }
+    for (const auto& [zone, on] : view.zones) {
+        if (!checked_.zones.contains(zone)) {
+            look_for(zone, zones, "a zone '");
+        }
+    }
+    checked_ = view;
 }
 
 /// Where a file has several times it can be said which.

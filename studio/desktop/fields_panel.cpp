@@ -230,6 +230,7 @@ void FieldsPanel::recolour() {
             cells_[i]->scene->colour_by(chosen[i], range.value_or(std::array<double, 2>{0, 1}));
         }
     }
+    check_names();
     look_from(state().fields.camera);
     for (const auto& cell : cells_) {
         if (cell->ready) {

@@ -95,6 +95,7 @@ private:
     [[nodiscard]] bool dark() const;
     void fill_controls();
     void fill_time();
+    void check_names();
     void recolour();
     void look_from(const std::string& camera);
     void not_read(std::size_t cell, const QString& why);
@@ -109,6 +110,7 @@ private:
 
     std::vector<std::unique_ptr<Cell>> cells_;
     std::string camera_;  ///< that the cells are seen from
+    FieldView checked_;   ///< whose names of arrays and zones were looked for in the files
     QGridLayout* grid_ = nullptr;
     QStackedLayout* stack_ = nullptr;
     QLabel* empty_ = nullptr;

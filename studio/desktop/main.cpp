@@ -47,8 +47,9 @@ int parse(int argc, char** argv, Options& options) {
                    "load the study, visit each workspace, save pictures of the window into this folder, and end")
         ->type_name("FOLDER");
     app.add_option("--replay", options.log,
-                   "carry out the lines of a log (Commands > Copy all) without a window, print the state that comes of "
-                   "it as JSON, and end; with --screenshot: in a window, and save pictures of it")
+                   "carry out the lines of a log (Commands > Copy all) without a window, on STUDY where one is named, "
+                   "print the state that comes of it as JSON, and end; with --screenshot: in a window, and save "
+                   "pictures of it")
         ->type_name("FILE");
     app.add_option("--theme", options.theme, "light, dark, or system: the desktop's own (default: as the last time)")
         ->check(CLI::IsMember({"light", "dark", "system"}));
@@ -103,8 +104,15 @@ int replay_without_window(const Options& options) {
     using namespace underbody::studio;
     History history;
     SessionPointer session = open_session({});
-    replay(underbody::core::read_file(options.log), options.log, history, session,
-           [&](const State& state) { return load_session(state, session); });
+    const auto load = [&](const State& state) { return load_session(state, session); };
+    if (!options.study.empty()) {
+        start_with(options.study, history, session, load);
+    }
+    replay(underbody::core::read_file(options.log), options.log, history, session, load);
+    // What was left out of the study on opening it changes what the state is of.
+    for (const auto& problem : session->problems) {
+        std::fprintf(stderr, "underbody-studio: %s\n", problem.message.c_str());
+    }
     const nlohmann::json document = {
         {"state", *history.state()}, {"hash", state_hash(*history.state())}, {"steps", history.position()}};
     std::printf("%s\n", document.dump(2).c_str());

@@ -83,12 +83,14 @@ int take_screenshots(MainWindow& window, const std::filesystem::path& study, con
     settle(window);
     save(window, folder / "empty.png");
     if (!log.empty()) {
-        window.desk().replay_log(log);
+        window.desk().replay_log(log, study);
+    } else if (std::filesystem::is_regular_file(study)) {
+        window.take_files({study});
     } else {
         window.open_study(study);
     }
     settle(window);
-    if (!window.has_study() && log.empty()) {
+    if (!window.last_error().isEmpty()) {
         std::fprintf(stderr, "underbody-studio: %s\n", window.last_error().toLocal8Bit().constData());
         save(window, folder / "window.png");
         return 3;

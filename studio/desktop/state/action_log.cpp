@@ -9,6 +9,9 @@
 #include <cstring>
 
 #include "core/file.h"
+#include "postproc/importers/importer.h"
+#include "studio/desktop/state/known_things.h"
+#include "studio/desktop/state/session_file.h"
 
 namespace underbody::studio {
 
@@ -74,6 +77,32 @@ std::vector<fs::path> left_over_logs(const fs::path& folder) {
 SessionPointer load_session(const State& state, const SessionPointer& known) {
     const bool same = known && known->folder == fs::path(state.study);
     return with_models(same ? with_files(*known, state.files) : open_session(state.study, state.files), state.accepted);
+}
+
+void start_with(const fs::path& path, History& history, SessionPointer& session, const SessionLoader& load) {
+    const std::string given = action::existing_path(path);
+    const auto act = [&](const Words& words) {
+        history.act(words, *session);
+        session = load(*history.state());
+    };
+    if (fs::path(given).extension() == ".ubs") {
+        const auto saved = read_session(given);
+        if (!saved.missing.empty()) {
+            throw core::InputError("missing", saved.problems.front().message, {given, {}, {}, {}});
+        }
+        history = History(saved.state);
+        session = load(*history.state());
+    } else if (fs::path(given).filename() == "study.toml" || fs::exists(fs::path(given) / "study.toml")) {
+        act({"open", given});
+    } else if (fs::path(given).extension() == ".toml") {
+        act({"add", "shape", given});
+        act({"shape", fs::path(given).stem().string()});
+    } else if (fs::is_directory(given) && postproc::importer_for(given) == nullptr) {
+        act({"open", given});  // says that there is no study in it
+    } else {
+        act({"add", "field", given});
+        act({"select", "field/" + given});
+    }
 }
 
 void replay(std::string_view text, const std::string& source, History& history, SessionPointer& session,

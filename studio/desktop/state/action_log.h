@@ -38,6 +38,12 @@ using SessionLoader = std::function<SessionPointer(const State&)>;
 void replay(std::string_view text, const std::string& source, History& history, SessionPointer& session,
             const SessionLoader& load);
 
+/// Opens what a program was started with, as its first step: a study, a SHAPE.toml, a CFD file; of a session (.ubs) the
+/// history begins with its state. Throws core::Error: nothing of that name (with the nearest), a study or a shape that
+/// is wrong, a session that lacks an input.
+void start_with(const std::filesystem::path& path, History& history, SessionPointer& session,
+                const SessionLoader& load);
+
 /// Opens what the state names, as the window does in a job.
 SessionPointer load_session(const State& state, const SessionPointer& known);
 

@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "geometry/body/variants.h"
 #include "studio/desktop/state/action_parts.h"
+#include "studio/desktop/state/known_things.h"
 
 namespace underbody::studio::action {
 
@@ -12,13 +13,8 @@ using core::UsageError;
 
 State look_at_table(State state, const Words& words, const Session& session) {
     need(words, 2, 100, "table NAME KEY=VALUE ...");
-    std::vector<std::string> names;
-    for (const auto& table : session.study.tables) {
-        names.push_back(table.name);
-    }
-    if (std::find(names.begin(), names.end(), words[0]) == names.end()) {
-        throw UsageError("missing", "there is no table '" + words[0] + "'", {}, core::did_you_mean(words[0], names));
-    }
+    need_one_of(words[0], names_of(state, session, "table"), "table");
+    const auto& axes = session.study.find_table(words[0])->axes;
     TableView& view = state.tables[words[0]];
     for (std::size_t i = 1; i < words.size(); ++i) {
         const auto [key, text] = assignment(words[i]);
@@ -28,10 +24,12 @@ State look_at_table(State state, const Words& words, const Session& session) {
             view.virtual_mass = number_or_none(text, "kg");
             within(view.virtual_mass.value_or(0), 0, 1e9, "virtual mass (kg)");
         } else if (key == "shown") {
+            need_table_view(axes, text);
             view.shown = text;
         } else if (key == "logarithmic") {
             view.logarithmic = text.empty() ? std::optional<bool>() : yes_or_no(text);
         } else if (key.starts_with("held.")) {
+            need_one_of(key.substr(5), axes, "axis");
             const auto* quantity = core::find_quantity(key.substr(5));
             view.held[key.substr(5)] = core::parse_in(text, quantity != nullptr ? quantity->unit : "1");
         } else {
@@ -43,13 +41,7 @@ State look_at_table(State state, const Words& words, const Session& session) {
 
 State look_at_region(State state, const Words& words, const Session& session) {
     need(words, 2, 100, "region NAME KEY=VALUE ...");
-    std::vector<std::string> names;
-    for (const auto& region : session.study.regions) {
-        names.push_back(region.name);
-    }
-    if (std::find(names.begin(), names.end(), words[0]) == names.end()) {
-        throw UsageError("missing", "there is no region '" + words[0] + "'", {}, core::did_you_mean(words[0], names));
-    }
+    need_one_of(words[0], names_of(state, session, "region"), "region");
     RegionView& view = state.regions[words[0]];
     for (std::size_t i = 1; i < words.size(); ++i) {
         const auto [key, text] = assignment(words[i]);
@@ -65,6 +57,9 @@ State look_at_region(State state, const Words& words, const Session& session) {
             if (!text.empty() && core::parse_ranges(text).size() != 2) {
                 throw UsageError("range", "a map has two axes, not those of '" + text + "'", {},
                                  "such as gap=1mm:20mm,pitch=-3deg:3deg");
+            }
+            for (const auto& axis : text.empty() ? std::vector<core::NamedRange>() : core::parse_ranges(text)) {
+                need_one_of(axis.name, {"gap", "heave_velocity", "pitch", "pitch_rate"}, "axis of a map");
             }
             view.axes = text;
             view.start.reset();
@@ -106,6 +101,7 @@ State look_at_region(State state, const Words& words, const Session& session) {
                 view.set.erase(key.substr(4));
             } else {
                 view.set[key.substr(4)] = core::parse_in(text, "1");
+                need_parameter(session, words[0], key.substr(4), view.set[key.substr(4)]);
             }
         } else {
             unknown_key(key, {"cells", "duration", "start", "show", "axes", "sweep", "steps", "draws", "gap_noise",
@@ -115,8 +111,10 @@ State look_at_region(State state, const Words& words, const Session& session) {
     return state;
 }
 
-State explore_axes(State state, const Words& words, const Session&) {
+State explore_axes(State state, const Words& words, const Session& session) {
     need(words, 2, 2, "axes X Y");
+    need_column(session, words[0]);
+    need_column(session, words[1]);
     state.explore.x = words[0];
     state.explore.y = words[1];
     return state;
@@ -152,6 +150,7 @@ State brush(State state, const Words& words, const Session& session) {
     }
     for (const auto& word : words) {
         const auto [column, text] = assignment(word);
+        need_column(session, column);
         if (text.empty()) {
             state.explore.brush.erase(column);
         } else {

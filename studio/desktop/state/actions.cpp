@@ -9,37 +9,53 @@
 #include "core/units.h"
 #include "geometry/body/variants.h"
 #include "studio/desktop/state/action_parts.h"
+#include "studio/desktop/state/known_things.h"
+#include "surrogates/tables/exports/export.h"
+#include "surrogates/tables/points/range_policy.h"
 
 namespace underbody::studio {
 
 namespace {
 
 using action::assignment;
+using action::existing_path;
+using action::names_of;
 using action::need;
+using action::need_one_of;
 using action::need_shape;
+using action::need_things;
 using action::unknown_key;
+using action::whole_path;
 using action::within;
 using core::UsageError;
 
-State open_study(State state, const Words& words, const Session& session) {
+State open_study(State state, const Words& words, const Session&) {
     need(words, 1, 1, "open FOLDER");
     State fresh;
     fresh.workspace = state.workspace;
     fresh.files = state.files;
-    fresh.study = std::filesystem::absolute(words[0]).lexically_normal().string();
-    if (fresh.study.size() > 1 && fresh.study.ends_with('/')) {
-        fresh.study.pop_back();
+    fresh.study = whole_path(words[0]);
+    if (std::filesystem::path(fresh.study).filename() == "study.toml") {
+        fresh.study = std::filesystem::path(fresh.study).parent_path().string();
     }
-    static_cast<void>(session);
+    static_cast<void>(existing_path(fresh.study));
+    if (!std::filesystem::exists(std::filesystem::path(fresh.study) / "study.toml")) {
+        throw core::InputError("missing", "there is no study.toml in this folder", {fresh.study, {}, {}, {}},
+                               "a study is a folder with a study.toml; see cases/evie");
+    }
     return fresh;
 }
 
 State add_file(State state, const Words& words, const Session&) {
     need(words, 2, 2, "add field|shape FILE");
     if (words[0] != "field" && words[0] != "shape") {
-        throw UsageError("unknown", "files are added as field or shape, not as '" + words[0] + "'");
+        throw UsageError("unknown", "files are added as field or shape, not as '" + words[0] + "'", {},
+                         core::did_you_mean(words[0], {"field", "shape"}));
     }
-    const std::string path = std::filesystem::absolute(words[1]).lexically_normal().string();
+    const std::string path = existing_path(words[1]);
+    if (words[0] == "shape") {
+        static_cast<void>(geometry::read_shape(path));  // says what is wrong with it
+    }
     const std::string entry = words[0] + ":" + path;
     if (std::find(state.files.begin(), state.files.end(), entry) == state.files.end()) {
         state.files.push_back(entry);
@@ -47,17 +63,21 @@ State add_file(State state, const Words& words, const Session&) {
     return state;
 }
 
-State remove_file(State state, const Words& words, const Session&) {
+State remove_file(State state, const Words& words, const Session& session) {
     need(words, 1, 1, "remove FILE");
-    const std::string path = std::filesystem::absolute(words[0]).lexically_normal().string();
+    const std::string path = whole_path(words[0]);
+    need_one_of(path, names_of(state, session, "field"), "file from outside the study");
     std::erase_if(state.files, [&](const std::string& entry) { return entry.ends_with(":" + path); });
     state.readings.erase(path);
     return state;
 }
 
-State locate(State state, const Words& words, const Session&) {
+State locate(State state, const Words& words, const Session& session) {
     need(words, 2, 2, "locate OLD NEW");
-    const std::string newer = std::filesystem::absolute(words[1]).lexically_normal().string();
+    const std::string newer = existing_path(words[1]);
+    std::vector<std::string> known = names_of(state, session, "field");
+    known.push_back(state.study);
+    need_one_of(words[0], known, "study or file");
     if (state.study == words[0]) {
         state.study = newer;
     }
@@ -84,14 +104,12 @@ State show_workspace(State state, const Words& words, const Session&) {
     return state;
 }
 
-State select(State state, const Words& words, const Session&) {
+State select(State state, const Words& words, const Session& session) {
+    need_things(state, session, words);
     state.selection.clear();
     std::map<std::string, std::vector<std::string>> kinds;
     for (const auto& id : words) {
         const auto at = id.find('/');
-        if (at == std::string::npos || at == 0 || at + 1 == id.size()) {
-            throw UsageError("words", "'" + id + "' is not KIND/NAME", {}, "such as case/ellipse-h5-p0");
-        }
         if (std::find(state.selection.begin(), state.selection.end(), id) == state.selection.end()) {
             state.selection.push_back(id);
             kinds[id.substr(0, at)].push_back(id.substr(at + 1));
@@ -106,8 +124,9 @@ State select(State state, const Words& words, const Session&) {
     return state;
 }
 
-State star(State state, const Words& words, const Session&) {
+State star(State state, const Words& words, const Session& session) {
     need(words, 1, 1000, "star KIND/NAME ...");
+    need_things(state, session, words);
     state.stars.insert(words.begin(), words.end());
     return state;
 }
@@ -115,6 +134,7 @@ State star(State state, const Words& words, const Session&) {
 State unstar(State state, const Words& words, const Session&) {
     need(words, 1, 1000, "unstar KIND/NAME ...");
     for (const auto& id : words) {
+        need_one_of(id, {state.stars.begin(), state.stars.end()}, "star at");
         state.stars.erase(id);
     }
     return state;
@@ -141,6 +161,9 @@ State set_parameters(State state, const Words& words, const Session& session) {
 
 State reset_parameters(State state, const Words& words, const Session& session) {
     const std::string name = need_shape(state, session);
+    for (const auto& parameter : words) {
+        static_cast<void>(geometry::parameter_unit(parameter, {}));
+    }
     if (words.empty()) {
         state.design.changes.erase(name);
     } else if (const auto changed = state.design.changes.find(name); changed != state.design.changes.end()) {
@@ -235,7 +258,26 @@ State unaccept(State state, const Words& words, const Session&) {
     return state;
 }
 
-State exported(State state, const Words& words, const Session&) {
+/// Formats, frames, numbers and ranges beyond the table that an export knows.
+void check_export(const State& state, const Session& session, const ExportRecord& record) {
+    need_one_of(record.table, names_of(state, session, "table"), "table");
+    std::vector<std::string> formats;
+    for (const auto& format : tables::export_formats()) {
+        formats.push_back(format.name);
+    }
+    need_one_of(record.format, formats, "format");
+    need_one_of(record.frame, {"up", "ned"}, "frame");
+    need_one_of(record.number, {"double", "float"}, "kind of number");
+    for (const auto& [axis, policy] : record.range) {
+        need_one_of(axis, session.study.find_table(record.table)->axes, "axis");
+        if (!tables::range_policy(policy)) {
+            throw UsageError("unknown", "there is no policy beyond the range '" + policy + "'", {},
+                             core::did_you_mean(policy, {"clamp", "refuse", "extrapolate"}));
+        }
+    }
+}
+
+State exported(State state, const Words& words, const Session& session) {
     need(words, 2, 100, "exported FILE TABLE KEY=VALUE ...");
     ExportRecord record;
     record.table = words[1];
@@ -256,7 +298,8 @@ State exported(State state, const Words& words, const Session&) {
             unknown_key(key, {"made_of", "format", "name", "frame", "number", "max_error", "range.AXIS"});
         }
     }
-    state.exports[std::filesystem::absolute(words[0]).lexically_normal().string()] = record;
+    check_export(state, session, record);
+    state.exports[whole_path(words[0])] = record;
     return state;
 }
 

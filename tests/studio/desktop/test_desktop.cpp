@@ -178,6 +178,30 @@ TEST(Desktop, ReplaysALogWithoutAWindow) {
     EXPECT_EQ(document["steps"], 2);
     EXPECT_EQ(run_studio({"--replay", (folder.path() / "done.log").string()}).output, run.output);
 
+    // On a study that is named: the same, a step later; a wrong one is said and nothing is replayed.
+    core::write_file(folder.path() / "lines.log", "set 'protrusion.height=2 mm'\nselect case/ellipse-h5-p0\n");
+    const auto named =
+        run_studio({(folder.path() / "study").string(), "--replay", (folder.path() / "lines.log").string()});
+    ASSERT_EQ(named.exit_code, 0) << named.errors;
+    EXPECT_EQ(nlohmann::json::parse(named.output)["state"]["study"], document["state"]["study"]);
+    EXPECT_EQ(nlohmann::json::parse(named.output)["state"]["design"], document["state"]["design"]);
+    core::write_file(folder.path() / "broken" / "study.toml", "title = \"x\"\n[[case]\n");
+    core::write_file(folder.path() / "none.log", "workspace tables\n");
+    for (const auto& [study, said] : std::map<std::string, std::string>{
+             {"broken", "study.toml:2"}, {"studdy", "did you mean 'study'"}, {"study/fields", "no study.toml"}}) {
+        const auto run_of_it =
+            run_studio({(folder.path() / study).string(), "--replay", (folder.path() / "none.log").string()});
+        EXPECT_EQ(run_of_it.exit_code, 3) << study;
+        EXPECT_EQ(run_of_it.output, "") << study;
+        EXPECT_NE(run_of_it.errors.find(said), std::string::npos) << run_of_it.errors;
+    }
+    // What is not there is not selected silently.
+    core::write_file(folder.path() / "nothing.log", "workspace tables\nselect file/one\n");
+    const auto nothing =
+        run_studio({(folder.path() / "study").string(), "--replay", (folder.path() / "nothing.log").string()});
+    EXPECT_EQ(nothing.exit_code, 3);
+    EXPECT_NE(nothing.errors.find("nothing.log:2"), std::string::npos) << nothing.errors;
+
     core::write_file(folder.path() / "wrong.log", "workspace nowhere\n");
     const auto wrong = run_studio({"--replay", (folder.path() / "wrong.log").string()});
     EXPECT_EQ(wrong.exit_code, 3);

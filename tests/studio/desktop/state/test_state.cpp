@@ -24,43 +24,60 @@ SessionPointer evie_session() {
     return session;
 }
 
+/// A folder with what is named in actions and stands outside the shipped study.
+fs::path elsewhere() {
+    static const core::TemporaryFolder folder;
+    static const bool made = [] {
+        fs::create_directories(folder.path() / "evie");
+        fs::copy(evie() / "study.toml", folder.path() / "evie" / "study.toml");
+        fs::create_directories(folder.path() / "moved");
+        for (const char* name : {"a.csv", "b.csv", "moved/a.csv"}) {
+            fs::copy(evie() / "fields" / "ellipse-h5-p0.csv", folder.path() / name);
+        }
+        return true;
+    }();
+    EXPECT_TRUE(made);
+    return folder.path();
+}
+
 /// A line of every verb and every key, fit for the shipped study.
 std::vector<std::string> every_action() {
-    return {"workspace tables",
-            "select case/ellipse-h5-p0 case/ellipse-h2-p0 table/drag region/glide",
-            "star case/ellipse-h5-p0",
-            "unstar case/ellipse-h5-p0",
-            "shape rectangle",
-            "set 'body.base_cut=0.7'",
-            "pin",
-            "set 'protrusion.height=1.5 mm' 'protrusion.length=8 mm'",
-            "reset protrusion.length",
-            "keep rectangle-2",
-            "set body.base_cut=0.72",
-            "reset",
-            "forget rectangle-2",
-            "operation gap=3mm pitch=1deg speed=0.7m/s",
-            "fields array=wall_shear whole_range=on edges=on mirror=off difference=on range=-100:100 camera=bottom "
-            "zone.hull=off",
-            "table lift net_weight=0.28N virtual_mass=4kg logarithmic=on 'shown=curve gap'",
-            "table 'lift over gap and pitch' held.pitch=1deg",
-            "region glide cells=60 duration=20s set.vehicle.net_weight=0.2 start=5mm,10mm/s",
-            "region glide as_declared=",
-            "axes pitch drag_force",
-            "brush gap=2mm:5mm lift_force=0:0.4",
-            "vary protrusion.height=1mm:3mm:3 body.base=ellipse,rectangle",
-            "brush volume=2000cm^3:2300cm^3",
-            "rows cases",
-            "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
-            "range.gap=clamp",
-            "add field /data/body.csv",
-            "read /data/body.csv length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base",
-            "fields view=speed-symmetry time=0.5s",
-            "region glide show=estimator gap_noise=0.1mm velocity_noise=1mm/s drag_error=0.3",
-            "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
-            "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
-            "locate " + evie().string() + " /elsewhere/evie",
-            "open " + evie().string()};
+    return {
+        "workspace tables",
+        "select case/ellipse-h5-p0 case/ellipse-h2-p0 table/drag region/glide",
+        "star case/ellipse-h5-p0",
+        "unstar case/ellipse-h5-p0",
+        "shape rectangle",
+        "set 'body.base_cut=0.7'",
+        "pin",
+        "set 'protrusion.height=1.5 mm' 'protrusion.length=8 mm'",
+        "reset protrusion.length",
+        "keep rectangle-2",
+        "set body.base_cut=0.72",
+        "reset",
+        "forget rectangle-2",
+        "operation gap=3mm pitch=1deg speed=0.7m/s",
+        "fields array=wall_shear whole_range=on edges=on mirror=off difference=on range=-100:100 camera=bottom "
+        "zone.hull=off",
+        "table lift net_weight=0.28N virtual_mass=4kg logarithmic=on 'shown=curve gap'",
+        "table 'lift over gap and pitch' held.pitch=1deg",
+        "region glide cells=60 duration=20s set.vehicle.net_weight=0.2 start=5mm,10mm/s",
+        "region glide as_declared=",
+        "axes pitch drag_force",
+        "brush gap=2mm:5mm lift_force=0:0.4",
+        "vary protrusion.height=1mm:3mm:3 body.base=ellipse,rectangle",
+        "brush volume=2000cm^3:2300cm^3",
+        "rows cases",
+        "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
+        "range.gap=clamp",
+        "add field " + (elsewhere() / "a.csv").string(),
+        "read " + (elsewhere() / "a.csv").string() + " length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base",
+        "fields view=speed-symmetry time=0.5s",
+        "region glide show=estimator gap_noise=0.1mm velocity_noise=1mm/s drag_error=0.3",
+        "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
+        "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
+        "locate " + evie().string() + " " + (elsewhere() / "evie").string(),
+        "open " + evie().string()};
 }
 
 State opened() {
@@ -128,19 +145,21 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
 TEST(StudioActions, WhatAFileDoesNotSayGoesWithIt) {
     History history(opened());
     const auto act = [&](const std::string& line) { history.act(words_of(line), *evie_session()); };
-    act("add field /data/a.csv");
-    act("add field /data/b.csv");
-    act("read /data/a.csv /data/b.csv length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base");
+    const std::string a = (elsewhere() / "a.csv").string(), b = (elsewhere() / "b.csv").string();
+    const std::string moved = (elsewhere() / "moved" / "a.csv").string();
+    act("add field " + a);
+    act("add field " + b);
+    act("read " + a + " " + b + " length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base");
     EXPECT_EQ(history.steps().back().command,
-              "underbody loads /data/a.csv --length-unit mm --unit Pressure=kPa --symmetry y --zones 'hull*,base'");
+              "underbody loads " + a + " --length-unit mm --unit Pressure=kPa --symmetry y --zones 'hull*,base'");
     EXPECT_EQ(history.state()->readings.size(), 2U);
-    EXPECT_THROW(act("read /data/a.csv length_unit=Pa"), core::Error);
-    EXPECT_THROW(act("read /data/a.csv lenght_unit=mm"), core::Error);
-    act("locate /data/a.csv /moved/a.csv");
-    EXPECT_EQ(history.state()->readings.at("/moved/a.csv").length_unit, "mm");
-    act("remove /data/b.csv");
-    EXPECT_FALSE(history.state()->readings.contains("/data/b.csv"));
-    act("read /moved/a.csv length_unit= unit.Pressure= symmetry= zones=");
+    EXPECT_THROW(act("read " + a + " length_unit=Pa"), core::Error);
+    EXPECT_THROW(act("read " + a + " lenght_unit=mm"), core::Error);
+    act("locate " + a + " " + moved);
+    EXPECT_EQ(history.state()->readings.at(moved).length_unit, "mm");
+    act("remove " + b);
+    EXPECT_FALSE(history.state()->readings.contains(b));
+    act("read " + moved + " length_unit= unit.Pressure= symmetry= zones=");
     EXPECT_TRUE(history.state()->readings.empty()) << "nothing said is nothing kept";
     history.go_to(3);
     const core::TemporaryFolder folder;
@@ -179,6 +198,42 @@ TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
         {"accept 'heave test'", "discovered"},
         {"unaccept x", "accepted"},
         {"select nonsense", "KIND/NAME"},
+        {"select file/one", "field"},
+        {"select case/elipse-h5-p0", "ellipse-h5-p0"},
+        {"select case/ellipse-h5-p0 table/lft", "lift"},
+        {"select field/one.csv", "nor any other"},
+        {"star case/ellipse-h5-p9", "ellipse-h5-p0"},
+        {"star cases/ellipse-h5-p0", "case"},
+        {"unstar case/ellipse-h5-p0", "no star"},
+        {"add field /no/such/file.csv", "no file or folder"},
+        {"add fields a.csv", "field"},
+        {"add shape " + (elsewhere() / "a.csv").string(), "a.csv"},
+        {"add field " + (elsewhere() / "a.cvs").string(), "did you mean 'a.csv'"},
+        {"remove " + (elsewhere() / "a.csv").string(), "outside the study"},
+        {"locate /no/such/evie " + (elsewhere() / "evie").string(), "study or file"},
+        {"locate " + evie().string() + " " + (elsewhere() / "eve").string(), "did you mean 'evie'"},
+        {"open " + (elsewhere() / "moved").string(), "no study.toml"},
+        {"open " + (elsewhere() / "eve").string(), "did you mean 'evie'"},
+        {"reset protrusion.heigth", "protrusion.height"},
+        {"table lift shown=curve pitch", "curve AXIS"},
+        {"table lift 'shown=curve pitch'", "gap"},
+        {"table lift shown=curv", "curve"},
+        {"table lift 'shown=map gap gap'", "no view"},
+        {"table lift held.gapp=1mm", "gap"},
+        {"region glide set.vehicle.net_wait=0.2", "vehicle.net_weight"},
+        {"region glide set.vehicle.mass=-1", "mass"},
+        {"region glide set.force.99.factor=2", "force.99.factor"},
+        {"region glide axes=gap=1mm:20mm,speed=0:1", "axis of a map"},
+        {"region glide sweep=sped=0:1", "speed"},
+        {"axes gap lift_forc", "lift_force"},
+        {"brush lift_forc=0:1", "lift_force"},
+        {"brush lift_forc=", "lift_force"},
+        {"exported /tmp/lift.h lft", "lift"},
+        {"exported /tmp/lift.h lift format=cc", "no format"},
+        {"exported /tmp/lift.h lift frame=nde", "ned"},
+        {"exported /tmp/lift.h lift number=flot", "float"},
+        {"exported /tmp/lift.h lift range.gap=clam", "clamp"},
+        {"exported /tmp/lift.h lift range.gup=clamp", "gap"},
         {"", "action"}};
     const StatePointer before = history.state();
     for (const auto& [line, told] : wrong) {
@@ -394,8 +449,8 @@ TEST(StudioSessionFile, ReadsBackFromAnywhere) {
     State state = opened();
     state.study = (first / "study").string();
     state.files = {"shape:" + (first / "hull.toml").string()};
-    for (const char* line : {"star case/x", "set body.base_cut=0.7", "table lift net_weight=0.1N", "keep one",
-                             "region glide start=5mm,1mm/s", "fields range=-1:1"}) {
+    for (const char* line : {"star case/ellipse-h5-p0", "set body.base_cut=0.7", "table lift net_weight=0.1N",
+                             "keep one", "region glide start=5mm,1mm/s", "fields range=-1:1"}) {
         state = applied(state, words_of(line), *evie_session());
     }
     write_session(state, first / "s.ubs");
@@ -439,7 +494,7 @@ TEST(StudioRecovery, TheLogOfAProgramThatDiedIsFoundAndThatOfALivingOneIsNot) {
     if (child == 0) {
         ActionLog log(folder.path());
         log.append("workspace tables");
-        log.append("star case/x");
+        log.append("operation gap=3mm");
         static_cast<void>(!::write(ready[1], "x", 1));
         ::_exit(9);  // no destructors: as a crash
     }
@@ -456,7 +511,7 @@ TEST(StudioRecovery, TheLogOfAProgramThatDiedIsFoundAndThatOfALivingOneIsNot) {
         replay(core::read_file(logs[0]), logs[0].string(), history, session,
                [](const State& state) { return load_session(state, {}); });
         EXPECT_EQ(history.state()->workspace, "tables");
-        EXPECT_TRUE(history.state()->stars.contains("case/x"));
+        EXPECT_DOUBLE_EQ(history.state()->design.gap, 0.003);
     }
     EXPECT_EQ(left_over_logs(folder.path()).size(), 1U) << "a program that ended in order leaves none";
 }
