@@ -235,7 +235,7 @@ void RegionPanel::show_known() {
     const auto& rank = known_->observability.separate_rank;
     const auto one = std::count(rank.begin(), rank.end(), 1U);
     about_->setText(
-        QString("The ground force is blind on %1 % of gaps and speeds: its least error is larger than itself. "
+        QString("Blind, where the least error of the ground force is larger than itself: %1 % of gaps and speeds. "
                 "The motion shows one combination of ground force and drag at %2 of %3 gaps; the law of the "
                 "drag, known to %4 %, tells them apart.")
             .arg(map_number(100 * map.blind_share, 3))

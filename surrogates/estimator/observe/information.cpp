@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -169,7 +170,7 @@ core::Figure InformationMap::along_gap(double speed) const {
         "Least standard deviations of the forces along the gap. A force is seen where its size lies above its "
         "curve.";
     f.x = {"gap", "mm", 1e3 * gaps.front(), 1e3 * gaps.back()};
-    double highest = 0;
+    double highest = 0, lowest = std::numeric_limits<double>::infinity();
     const auto curve = [&](const char* name, const std::vector<double>& values, std::size_t from, int colour,
                            bool dashed) {
         core::FigureCurve drawn;
@@ -180,6 +181,7 @@ core::Figure InformationMap::along_gap(double speed) const {
             drawn.x.push_back(1e3 * gaps[i]);
             drawn.y.push_back(1e3 * std::abs(values[from + i]));
             highest = std::max(highest, drawn.y.back());
+            lowest = drawn.y.back() > 0 ? std::min(lowest, drawn.y.back()) : lowest;
         }
         f.curves.push_back(std::move(drawn));
     };
@@ -187,7 +189,8 @@ core::Figure InformationMap::along_gap(double speed) const {
     curve("error of the drag", drag_sigma, row, 2, false);
     curve("error of their sum", total_sigma, row, 0, false);
     curve("size of the ground force", ground_force, 0, 7, true);
-    f.y = {"force", "mN", 0, 1.05 * highest};
+    f.y = {"force", "mN", 0.7 * std::max(lowest, 1e-6 * highest), 1.5 * highest};
+    f.y.logarithmic = lowest < highest;  // errors are far smaller than what they are errors of
     return f;
 }
 
