@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/add_cases.h"
+#include "cases/add_measurement.h"
 #include "core/text.h"
 #include "studio/cli/study_parts.h"
 
@@ -63,8 +64,41 @@ cases::NewCases new_cases(const StudyArguments& arguments) {
     return cases;
 }
 
+/// Appends a [[measurement]] to study.toml, and writes its data set where there is none.
+int add_measurement(Shell& shell, const StudyArguments& arguments) {
+    cases::NewMeasurement measurement;
+    measurement.data.assign(arguments.data.begin(), arguments.data.end());
+    measurement.model = arguments.model;
+    measurement.name = arguments.name.empty() ? measurement.data.front().stem().string() : arguments.name;
+    for (const auto& channel : arguments.channels) {
+        measurement.channels.push_back(cases::measured_channel(channel));
+    }
+    const auto colon = arguments.clock.rfind(':');
+    measurement.clock = arguments.clock.substr(0, colon);
+    measurement.clock_unit = colon == std::string::npos ? "" : arguments.clock.substr(colon + 1);
+    const auto added = cases::with_new_measurement(arguments.folder, measurement);
+    cases::write_added(added);
+    shell.print("measurement '" + measurement.name + "' added to " + added.file.string() + ": " + added.said);
+    if (shell.json) {
+        shell.print_json(
+            {{"added", 1},
+             {"study", added.file.string()},
+             {"measurement", measurement.name},
+             {"dataset", added.dataset.empty() ? nlohmann::json() : nlohmann::json(added.dataset.string())},
+             {"data", added.said}});
+    }
+    return done;
+}
+
 /// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
 int add(Shell& shell, const StudyArguments& arguments) {
+    if (arguments.files.empty() == arguments.data.empty()) {
+        throw core::UsageError("usage", "study add takes either --files (cases) or --data (a measurement)", {},
+                               "--files 'fields/{variant}-h{gap:mm}.csv', or --data runs --model model.toml");
+    }
+    if (!arguments.data.empty()) {
+        return add_measurement(shell, arguments);
+    }
     const auto added = cases::with_new_cases(arguments.folder, new_cases(arguments));
     show_notes(shell, added.study);
     cases::write_added(added);
@@ -84,7 +118,15 @@ int add(Shell& shell, const StudyArguments& arguments) {
 void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, Shell& shell) {
     auto* command = study->add_subcommand("add", "add cases to a study, or start one");
     command->add_option("study", arguments->folder, "folder of the study")->required();
-    command->add_option("--files", arguments->files, "pattern of the files, relative to the study")->required();
+    command->add_option("--files", arguments->files, "pattern of the files, relative to the study");
+    command->add_option("--data", arguments->data,
+                        "a measurement in place of cases: a folder with dataset.toml, or logs and tables of runs");
+    command->add_option("--model", arguments->model, "of --data: the model that it is judged by");
+    command->add_option("--name", arguments->name, "of --data: name of the measurement (default: of the first file)");
+    command->add_option("--channel", arguments->channels,
+                        "of --data: where a quantity stands: gap=rng_cm:cm, of a log gap=RFND/Dist (repeatable)");
+    command->add_option("--clock", arguments->clock,
+                        "of --data: field that says when, with its unit: t_us:us (default: the log's own time)");
     command->add_option("--condition", arguments->conditions, "name=value held for all of them (repeatable)");
     command->add_option("--symmetry", arguments->symmetry,
                         "half models: normal axis of their plane (y), written to [frame]");

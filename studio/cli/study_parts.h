@@ -21,6 +21,8 @@ struct StudyArguments {
     std::string symmetry;
     std::string length_unit;
     std::vector<std::string> units;
+    std::vector<std::string> data, channels;  ///< of a measurement
+    std::string model, name, clock;
     std::string design_points;
     std::vector<std::string> parameters;
     std::string what;

@@ -1,10 +1,12 @@
 // What is dropped on the window, or named on its command line: content decides what becomes of it.
 #include <filesystem>
 
+#include "cases/add_measurement.h"
 #include "core/error.h"
 #include "geometry/body/body_shape.h"
 #include "postproc/importers/importer.h"
 #include "studio/desktop/main_window.h"
+#include "studio/desktop/measurement_sheet.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/take_in_sheet.h"
@@ -15,12 +17,14 @@ namespace fs = std::filesystem;
 
 void MainWindow::take_files(const std::vector<fs::path>& files) {
     Words fields = {"select"};
-    std::vector<fs::path> folders;
+    std::vector<fs::path> folders, measured;
     for (const fs::path& path : files) {
         guarded("opening " + qt(path.string()), [&] {
             const bool folder = fs::is_directory(path);
             if (path.filename() == "study.toml" || !fs::exists(path) || fs::exists(path / "study.toml")) {
                 open_study(path);
+            } else if (cases::holds_measurements(path) && postproc::importer_for(path) == nullptr) {
+                measured.push_back(path);
             } else if (folder && postproc::importer_for(path) == nullptr) {
                 folders.push_back(path);
             } else if (path.extension() == ".ubs") {
@@ -42,6 +46,25 @@ void MainWindow::take_files(const std::vector<fs::path>& files) {
     if (!folders.empty()) {
         take_in(folders);
     }
+    if (!measured.empty()) {
+        guarded("taking measurements in", [&] { take_measurements(measured); });
+    }
+}
+
+MeasurementSheet* MainWindow::take_measurements(const std::vector<fs::path>& data) {
+    if (!desk_->has_study()) {
+        throw core::InputError("missing", "measurements are judged by a model of a study, and none is open", {},
+                               "open the study first (Ctrl+O), then drop them");
+    }
+    auto* sheet = new MeasurementSheet(*desk_, data, this);
+    connect(sheet, &MeasurementSheet::failed, this, &MainWindow::show_failure);
+    connect(sheet, &MeasurementSheet::taken, this, [this](const QString& name, const QString& command) {
+        problems_->note("Took in the measurement '" + name + "'. The same: " + command);
+        desk_->open_and_run(desk_->session().folder,
+                            {{"select", "measurement/" + name.toStdString()}, {"workspace", "loop"}});
+    });
+    sheet->show();
+    return sheet;
 }
 
 TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {

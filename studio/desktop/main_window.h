@@ -22,6 +22,7 @@ namespace underbody::studio {
 
 class Banner;
 class FirstPage;
+class MeasurementSheet;
 class Panel;
 class ProblemList;
 class StudyTree;
@@ -44,6 +45,9 @@ public:
     void take_files(const std::vector<std::filesystem::path>& files);
     /// A sheet that makes cases of a study out of CFD files and folders of them; it deletes itself.
     TakeInSheet* take_in(const std::vector<std::filesystem::path>& files);
+    /// A sheet that makes a measurement of the study out of data sets, logs and tables. Throws core::InputError when no
+    /// study is open.
+    MeasurementSheet* take_measurements(const std::vector<std::filesystem::path>& data);
     /// Asks whether to go on where a program that did not wind up stopped.
     void offer_recovery();
     /// The last error that was shown, for a start without anybody at the window.

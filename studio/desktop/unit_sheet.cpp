@@ -14,21 +14,17 @@
 
 namespace underbody::studio {
 
-namespace {
-
-/// What people write for a quantity of this unit.
 QStringList usual_units(const std::string& unit) {
     for (const QStringList& kind :
          {QStringList{"m", "mm", "cm", "um", "inch", "foot"}, QStringList{"Pa", "kPa", "MPa", "bar", "mbar", "psi"},
-          QStringList{"m/s", "mm/s", "km/h", "foot/s"}, QStringList{"N", "mN", "lbf"}}) {
+          QStringList{"m/s", "mm/s", "cm/s", "km/h", "foot/s"}, QStringList{"N", "mN", "lbf"},
+          QStringList{"s", "ms", "us", "ns"}, QStringList{"rad", "deg"}, QStringList{"V", "mV"}}) {
         if (core::is_unit(unit) && core::same_dimension(unit, kind.front().toStdString())) {
             return kind;
         }
     }
     return {qt(unit)};
 }
-
-}  // namespace
 
 QComboBox* unit_choice(const postproc::UnstatedUnit& unit, QWidget* parent) {
     auto* choice = new QComboBox(parent);

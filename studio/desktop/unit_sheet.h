@@ -16,6 +16,8 @@ class QPushButton;
 
 namespace underbody::studio {
 
+/// What people write for a quantity of this unit: the dimension's usual ones, else the unit itself.
+QStringList usual_units(const std::string& unit);
 /// Units of one kind to choose from, with a first line that chooses nothing where one is needed.
 QComboBox* unit_choice(const postproc::UnstatedUnit& unit, QWidget* parent);
 

@@ -1,0 +1,315 @@
+#include "cases/add_measurement.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/own_files.h"
+#include "core/text.h"
+#include "core/toml.h"
+#include "core/units.h"
+#include "surrogates/dynamics/logs/log.h"
+#include "surrogates/dynamics/logs/log_summary.h"
+#include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/model.h"
+
+namespace underbody::cases {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A heading of a CSV file: "rng_cm [cm]" -> name and unit.
+struct Heading {
+    std::string name, unit;
+};
+
+/// Of the first line that is no comment; empty for what is no table.
+std::vector<Heading> headings_of(const fs::path& file) {
+    constexpr std::size_t most = 65536;
+    std::string head(most, ' ');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(head.data(), static_cast<std::streamsize>(most));
+    head.resize(static_cast<std::size_t>(stream.gcount()));
+    if (head.find('\0') != std::string::npos) {
+        return {};
+    }
+    for (const auto line : core::split(head, '\n')) {
+        const auto text = core::trimmed(line);
+        if (text.empty() || text.front() == '#') {
+            continue;
+        }
+        std::vector<Heading> headings;
+        for (const auto cell : core::split(text, ',')) {
+            const std::string whole(core::trimmed(cell));
+            const auto open = whole.rfind('[');
+            const bool unit = open != std::string::npos && whole.ends_with(']');
+            headings.push_back(
+                {std::string(core::trimmed(std::string_view(whole).substr(0, unit ? open : whole.size()))),
+                 unit ? std::string(core::trimmed(std::string_view(whole).substr(open + 1, whole.size() - open - 2)))
+                      : std::string()});
+        }
+        return headings.size() > 1 ? headings : std::vector<Heading>();
+    }
+    return {};
+}
+
+/// How headings of logs begin that people write.
+constexpr const char* measured_words[] = {"time", "t_", "stamp", "rng", "range", "dist", "gap"};
+
+bool is_log(const fs::path& path) { return !dynamics::log_format(path).empty(); }
+
+/// A table one of whose headings is a quantity, a time or a range.
+bool is_table(const fs::path& path) {
+    if (!fs::is_regular_file(path) || core::lower_case(path.extension().string()) != ".csv") {
+        return false;
+    }
+    const auto headings = headings_of(path);
+    return std::any_of(headings.begin(), headings.end(), [](const Heading& one) {
+        const std::string name = core::lower_case(one.name);
+        const bool begins = std::any_of(std::begin(measured_words), std::end(measured_words),
+                                        [&](const char* word) { return name.starts_with(word); });
+        return begins || core::find_quantity(one.name) != nullptr;
+    });
+}
+
+std::string dataset_text(const NewMeasurement& measurement, const std::vector<fs::path>& files, const fs::path& place) {
+    bool time = false, logs = false;
+    for (const auto& file : files) {
+        const bool log = is_log(file);
+        logs = logs || log;
+        const auto headings = log ? std::vector<Heading>() : headings_of(file);
+        time = time || log || !measurement.clock.empty() ||
+               std::any_of(headings.begin(), headings.end(), [](const Heading& one) { return one.name == "time"; });
+    }
+    std::string text = "kind = " + core::toml_string(time ? "time_series" : "static") +
+                       "\ntitle = " + core::toml_string(measurement.name) + "\n";
+    for (const auto& file : files) {
+        const auto relative = file.lexically_relative(place);
+        text += "\n[[run]]\nfile = " + core::toml_string((relative.empty() ? file : relative).generic_string()) + "\n";
+    }
+    if (!measurement.channels.empty() || !measurement.clock.empty()) {
+        text += "\n[log]\n";
+        text += measurement.clock.empty() ? "" : "clock = " + core::toml_string(measurement.clock) + "\n";
+        text +=
+            measurement.clock_unit.empty() ? "" : "clock_unit = " + core::toml_string(measurement.clock_unit) + "\n";
+    }
+    for (const auto& channel : measurement.channels) {
+        text += "channel." + channel.quantity + " = { ";
+        text += channel.message.empty() ? "" : "message = " + core::toml_string(channel.message) + ", ";
+        text += "field = " + core::toml_string(channel.field);
+        text += (channel.unit.empty() ? "" : ", unit = " + core::toml_string(channel.unit)) + " }\n";
+    }
+    return text;
+}
+
+std::string said_of(const dynamics::Measurements& data) {
+    std::size_t rows = 0;
+    std::string columns;
+    for (const auto& run : data.runs) {
+        rows += run.table.rows();
+    }
+    for (const auto& column : data.runs.front().table.columns()) {
+        columns += (columns.empty() ? "" : ", ") + column.name;
+    }
+    return std::to_string(data.runs.size()) + (data.runs.size() == 1 ? " run, " : " runs, ") + std::to_string(rows) +
+           " rows: " + columns;
+}
+
+/// What a new data set says is tried in a folder of its own, with the paths of the files as they are.
+std::string try_data_set(const NewMeasurement& measurement, const std::vector<fs::path>& files) {
+    const core::TemporaryFolder trial;
+    core::write_file(trial.path() / "dataset.toml", dataset_text(measurement, files, {}));
+    try {
+        return said_of(dynamics::read_measurements(trial.path()));
+    } catch (const core::InputError& error) {
+        const bool own = error.place().file.starts_with(trial.path().string());
+        throw core::InputError(error.kind(), error.message(), own ? core::Place{} : error.place(), error.hint());
+    }
+}
+
+}  // namespace
+
+MeasuredChannel measured_channel(const std::string& text) {
+    MeasuredChannel channel;
+    const auto equal = text.find('=');
+    if (equal == std::string::npos || equal == 0 || equal + 1 == text.size()) {
+        throw core::UsageError("parse", "'" + text + "' is not of the form quantity=FIELD:unit", {},
+                               "gap=rng_cm:cm, or of a log gap=RFND/Dist:m");
+    }
+    channel.quantity = core::trimmed(std::string_view(text).substr(0, equal));
+    if (core::find_quantity(channel.quantity) == nullptr) {
+        std::vector<std::string> known;
+        for (const auto& quantity : core::quantity_names()) {
+            known.push_back(quantity.name);
+        }
+        throw core::UsageError("name", "there is no quantity '" + channel.quantity + "'", {},
+                               core::did_you_mean(channel.quantity, known));
+    }
+    std::string field = text.substr(equal + 1);
+    if (const auto colon = field.rfind(':'); colon != std::string::npos && core::is_unit(field.substr(colon + 1))) {
+        channel.unit = field.substr(colon + 1);
+        field.resize(colon);
+    }
+    const auto stroke = field.rfind('/');
+    channel.message = stroke == std::string::npos || stroke == 0 ? "" : field.substr(0, stroke);
+    channel.field = stroke == std::string::npos || stroke == 0 ? field : field.substr(stroke + 1);
+    return channel;
+}
+
+std::vector<fs::path> measured_files(const std::vector<fs::path>& given) {
+    std::vector<fs::path> files;
+    for (const auto& one : given) {
+        const fs::path path = fs::absolute(one).lexically_normal();
+        if (!fs::is_directory(path) || fs::exists(path / "dataset.toml") || is_log(path)) {
+            files.push_back(path);
+            continue;
+        }
+        std::vector<fs::path> inside;
+        for (const auto& entry : fs::directory_iterator(path)) {
+            if (is_log(entry.path()) || is_table(entry.path())) {
+                inside.push_back(entry.path());
+            }
+        }
+        std::sort(inside.begin(), inside.end());
+        files.insert(files.end(), inside.begin(), inside.end());
+    }
+    return files;
+}
+
+bool holds_measurements(const fs::path& path) {
+    if (path.filename() == "dataset.toml" || fs::exists(path / "dataset.toml") || is_log(path) || is_table(path)) {
+        return true;
+    }
+    return fs::is_directory(path) && !measured_files({path}).empty();
+}
+
+std::vector<MeasuredField> measured_fields(const fs::path& file, core::Progress& progress) {
+    std::vector<MeasuredField> fields;
+    if (is_log(file)) {
+        for (const auto& series : dynamics::summarise_log(file, progress).series) {
+            for (const auto& field : series.fields) {
+                fields.push_back({series.name, field.name, field.unit});
+            }
+        }
+    } else if (is_table(file)) {
+        for (const auto& heading : headings_of(file)) {
+            fields.push_back({"", heading.name, heading.unit});
+        }
+    }
+    return fields;
+}
+
+namespace {
+
+/// "cm" of "rng_cm", where that is a unit of the dimension of `like`; else empty.
+std::string unit_in_name(const std::string& name, const char* like) {
+    const auto bar = name.rfind('_');
+    const std::string end = bar == std::string::npos ? "" : name.substr(bar + 1);
+    return core::is_unit(end) && core::same_dimension(end, like) ? end : "";
+}
+
+bool begins_with_any(const std::string& name, std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(), [&](const char* word) { return name.starts_with(word); });
+}
+
+}  // namespace
+
+std::vector<MeasuredChannel> guessed_channels(const std::vector<MeasuredField>& fields) {
+    const std::set<std::string> ranges = {"range", "Dist", "current_distance", "distance"};
+    for (const auto& one : fields) {
+        if (one.message.empty() && one.field == "gap") {
+            return {};  // the headings are the program's own
+        }
+    }
+    for (const auto& one : fields) {
+        const std::string name = core::lower_case(one.field);
+        const std::string unit = one.unit.empty() ? unit_in_name(name, "m") : "";
+        if (!one.message.empty() && ranges.contains(one.field)) {
+            return {{"gap", one.message, one.field, one.unit.empty() ? "m" : ""}};
+        }
+        if (one.message.empty() && begins_with_any(name, {"gap", "rng", "range", "dist", "height"})) {
+            return {{"gap", "", one.field, unit}};
+        }
+    }
+    return {};
+}
+
+std::string guessed_clock(const std::vector<MeasuredField>& fields) {
+    std::string found;
+    for (const auto& one : fields) {
+        const std::string name = core::lower_case(one.field);
+        if (!one.message.empty() || one.field == "time") {
+            return {};
+        }
+        if (found.empty() && begins_with_any(name, {"time", "t_", "stamp"})) {
+            const std::string unit = one.unit.empty() ? unit_in_name(name, "s") : "";
+            found = one.field + (unit.empty() ? "" : ":" + unit);
+        }
+    }
+    return found;
+}
+
+std::string text_of(const MeasuredChannel& channel) {
+    return channel.quantity + "=" + (channel.message.empty() ? "" : channel.message + "/") + channel.field +
+           (channel.unit.empty() ? "" : ":" + channel.unit);
+}
+
+AddedMeasurement with_new_measurement(const fs::path& folder, const NewMeasurement& measurement) {
+    AddedMeasurement added;
+    added.file = folder / "study.toml";
+    const fs::path place = fs::absolute(folder / "x").lexically_normal().parent_path();
+    const auto relative = [&](const fs::path& path) {
+        return fs::absolute(path).lexically_normal().lexically_relative(place).generic_string();
+    };
+    const auto files = measured_files(measurement.data);
+    if (files.empty()) {
+        throw core::InputError("missing", "there are no measurements", {},
+                               "a folder with dataset.toml, logs, or tables with time and gap");
+    }
+    if (measurement.model.empty()) {
+        throw core::InputError("missing", "there is no model to judge the measurements by", {},
+                               "a model.toml; `underbody new model` writes one to begin with");
+    }
+    static_cast<void>(dynamics::read_model(measurement.model));  // says what is wrong with it
+    fs::path data = files.front().filename() == "dataset.toml" ? files.front().parent_path() : files.front();
+    if (files.size() == 1 && fs::exists(data / "dataset.toml")) {
+        added.said = said_of(dynamics::read_measurements(data));
+    } else {
+        added.said = try_data_set(measurement, files);
+        data = place / "measurements" / measurement.name;
+        added.dataset = data / "dataset.toml";
+        if (fs::exists(added.dataset)) {
+            throw core::InputError("exists", "there is a data set already", {added.dataset.string(), {}, {}, {}},
+                                   "take another name");
+        }
+        added.dataset_text = dataset_text(measurement, files, data);
+    }
+    const std::string before = core::read_file(added.file);
+    const auto with = [&](const fs::path& of) {
+        return before + "\n[[measurement]]\nname = " + core::toml_string(measurement.name) +
+               "\nmodel = " + core::toml_string(relative(measurement.model)) +
+               "\ndata = " + core::toml_string(relative(of)) + (measurement.discover ? "\ndiscover = true\n" : "\n");
+    };
+    added.text = with(data);
+    try {  // a data set that is not written yet is no file that could be named
+        added.study = Study::from_text(with(added.dataset.empty() ? data : files.front()), added.file);
+        added.study.measurements.back().data = data;
+    } catch (const core::InputError& error) {
+        throw core::InputError(error.kind(), error.message() + "; nothing was written", {}, error.hint());
+    }
+    return added;
+}
+
+void write_added(const AddedMeasurement& added) {
+    if (!added.dataset.empty()) {
+        fs::create_directories(added.dataset.parent_path());
+        core::write_file(added.dataset, added.dataset_text);
+    }
+    const core::ReplacingAllowed of_the_user;  // who asked for it
+    core::write_file(added.file, added.text);
+}
+
+}  // namespace underbody::cases

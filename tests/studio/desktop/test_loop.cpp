@@ -1,0 +1,167 @@
+// Loop: measurements and logs that are dropped on the window, from the file to the verdict and what is made of it.
+#include <QComboBox>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTextBrowser>
+#include <cmath>
+
+#include "cases/add_measurement.h"
+#include "core/text.h"
+#include "studio/desktop/desk.h"
+#include "studio/desktop/discovery_panel.h"
+#include "studio/desktop/jobs.h"
+#include "studio/desktop/measurement_sheet.h"
+#include "tests/studio/desktop/window_fixture.h"
+
+namespace underbody::studio {
+namespace {
+
+/// A table of its own headings, as people's loggers write it.
+void write_flight(const fs::path& file) {
+    std::string text = "t_ms,rng_cm\n";
+    for (int i = 0; i < 400; ++i) {
+        text += std::to_string(20 * i) + "," + core::format_number(9.1 + 0.05 * std::sin(0.02 * i)) + "\n";
+    }
+    core::write_file(file, text);
+}
+
+class Dropped : public Window {
+protected:
+    MeasurementSheet* drop(const std::vector<fs::path>& files) {
+        window_->take_files(files);
+        settle(*window_);
+        auto* sheet = window_->findChild<MeasurementSheet*>();
+        EXPECT_NE(sheet, nullptr) << window_->last_error().toStdString();
+        return sheet;
+    }
+};
+
+// A log that is dropped becomes a data set and a measurement of the study; what is missing is asked.
+TEST_F(Dropped, ALogIsJudged) {
+    const fs::path study = copy_of_study();
+    open(study);
+    const fs::path log = folder_.path() / "flight.csv";
+    write_flight(log);
+    auto* sheet = drop({log});
+    ASSERT_NE(sheet, nullptr);
+    EXPECT_EQ(sheet->field_of("gap")->currentText(), "rng_cm") << "told from the heading";
+    EXPECT_EQ(sheet->unit_of("gap")->currentText(), "cm");
+    EXPECT_EQ(sheet->field_of("time")->currentText(), "t_ms");
+    EXPECT_EQ(sheet->unit_of("time")->currentText(), "ms");
+    EXPECT_EQ(sheet->wrong(), "");
+    sheet->unit_of("gap")->setEditText("");
+    settle(*window_);
+    EXPECT_TRUE(sheet->wrong().contains("does not say the unit of rng_cm")) << sheet->wrong().toStdString();
+    sheet->unit_of("gap")->setEditText("kg");
+    settle(*window_);
+    EXPECT_TRUE(sheet->wrong().contains("'kg' is no unit of the gap")) << sheet->wrong().toStdString();
+    sheet->unit_of("gap")->setEditText("cm");
+    sheet->field_of("gap")->setEditText("rng_km");
+    settle(*window_);
+    EXPECT_TRUE(sheet->wrong().contains("rng_cm")) << "the nearest name: " << sheet->wrong().toStdString();
+    sheet->field_of("gap")->setEditText("rng_cm");
+    settle(*window_);
+    ASSERT_EQ(sheet->wrong(), "");
+    const Words command = sheet->command();
+    const std::string before = core::read_file(study / "study.toml");
+    sheet->accept();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().workspace, "loop");
+    EXPECT_EQ(window_->desk().state().selection, std::vector<std::string>{"measurement/flight"});
+    const auto& session = window_->desk().session();
+    ASSERT_EQ(session.study.measurements.size(), 1U) << window_->last_error().toStdString();
+    EXPECT_NE(session.results.document("residual/flight"), nullptr) << window_->last_error().toStdString();
+    EXPECT_NE(session.results.document("discovery/flight"), nullptr);
+    const QString page = panel<DiscoveryPanel>().findChild<QTextBrowser*>()->toPlainText();
+    EXPECT_TRUE(page.contains("flight")) << page.toStdString();
+    EXPECT_TRUE(page.contains("held out")) << "residual before and after: " << page.toStdString();
+    // The command does the same.
+    const std::string written = core::read_file(study / "study.toml");
+    const fs::path data = study / "measurements" / "flight" / "dataset.toml";
+    const std::string set = core::read_file(data);
+    core::write_file(study / "study.toml", before);
+    fs::remove(data);
+    const auto run = test::run_underbody({command.begin() + 1, command.end()});
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ(core::read_file(study / "study.toml"), written);
+    EXPECT_EQ(core::read_file(data), set);
+}
+
+// What is cancelled, or not complete, writes nothing.
+TEST_F(Dropped, NothingIsWrittenBeforeItIsTakenIn) {
+    const fs::path study = copy_of_study();
+    open(study);
+    const std::string before = core::read_file(study / "study.toml");
+    write_flight(folder_.path() / "flight.csv");
+    auto* sheet = drop({folder_.path() / "flight.csv"});
+    ASSERT_NE(sheet, nullptr);
+    sheet->reject();
+    settle(*window_);
+    EXPECT_EQ(core::read_file(study / "study.toml"), before);
+    EXPECT_FALSE(fs::exists(study / "measurements"));
+    EXPECT_EQ(window_->desk().state().workspace, "design");
+}
+
+// Without a study there is no model to judge by: a sentence, and no sheet.
+TEST_F(Dropped, ALogWithoutAStudyIsASentence) {
+    write_flight(folder_.path() / "flight.csv");
+    window_->take_files({folder_.path() / "flight.csv"});
+    settle(*window_);
+    EXPECT_TRUE(window_->last_error().contains("open the study first")) << window_->last_error().toStdString();
+    EXPECT_EQ(window_->findChild<MeasurementSheet*>(), nullptr);
+}
+
+// The shipped measurement is a data set: nothing is asked, and its folder or its dataset.toml are the same.
+TEST_F(Dropped, ADataSetSaysItselfWhatItHolds) {
+    open(computed_study());
+    for (const fs::path& given : {test::source_folder() / "cases" / "evie" / "heave",
+                                  test::source_folder() / "cases" / "evie" / "heave" / "dataset.toml"}) {
+        auto* sheet = drop({given});
+        ASSERT_NE(sheet, nullptr);
+        EXPECT_EQ(sheet->wrong(), "") << given;
+        const Words command = sheet->command();
+        EXPECT_EQ(std::count(command.begin(), command.end(), "--channel"), 0);
+        delete sheet;
+    }
+}
+
+// Vehicles' logs are told by their content, whatever they are called, and list their fields.
+TEST_F(Dropped, LogsOfVehiclesListTheirFields) {
+    const fs::path logs = test::source_folder().parent_path() / "shared" / "samples" / "logs";
+    if (!fs::exists(logs)) {
+        GTEST_SKIP() << "skipped: " << logs << " is not there";
+    }
+    open(computed_study());
+    const std::map<std::string, std::pair<const char*, const char*>> known = {
+        {"ardusub_small.BIN", {"BARO/Alt", "m"}}, {"sample_log_small.ulg", {"vehicle_local_position/z", ""}}};
+    for (const auto& [name, field] : known) {
+        const fs::path renamed = folder_.path() / (name.substr(0, 4) + ".dat");
+        fs::copy_file(logs / name, renamed);
+        auto* sheet = drop({renamed});
+        ASSERT_NE(sheet, nullptr) << name;
+        EXPECT_GE(sheet->field_of("gap")->findText(field.first), 0) << name;
+        sheet->field_of("gap")->setEditText(field.first);
+        settle(*window_);
+        if (std::string(field.second).empty()) {  // the log does not say it: it is asked
+            EXPECT_TRUE(sheet->wrong().contains("does not say the unit")) << sheet->wrong().toStdString();
+            sheet->unit_of("gap")->setEditText("m");
+            settle(*window_);
+        }
+        EXPECT_FALSE(sheet->wrong().contains("unit")) << name << ": " << sheet->wrong().toStdString();
+        delete sheet;
+    }
+}
+
+// A damaged log says why; the window goes on.
+TEST_F(Dropped, ADamagedLogSaysWhy) {
+    open(computed_study());
+    const fs::path log = folder_.path() / "cut.ulg";
+    core::write_file(log, std::string("ULog\x01\x12\x35\x01", 8) + std::string(8, '\0') + "nonsense");
+    auto* sheet = drop({log});
+    ASSERT_NE(sheet, nullptr);
+    EXPECT_FALSE(sheet->wrong().isEmpty());
+    EXPECT_NE(sheet->wrong(), "looking at the data");
+}
+
+}  // namespace
+}  // namespace underbody::studio
