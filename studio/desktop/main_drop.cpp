@@ -51,12 +51,12 @@ void MainWindow::take_files(const std::vector<fs::path>& files) {
     }
 }
 
-MeasurementSheet* MainWindow::take_measurements(const std::vector<fs::path>& data) {
+MeasurementSheet* MainWindow::take_measurements(const std::vector<fs::path>& measured) {
     if (!desk_->has_study()) {
         throw core::InputError("missing", "measurements are judged by a model of a study, and none is open", {},
                                "open the study first (Ctrl+O), then drop them");
     }
-    auto* sheet = new MeasurementSheet(*desk_, data, this);
+    auto* sheet = new MeasurementSheet(*desk_, measured, this);
     connect(sheet, &MeasurementSheet::failed, this, &MainWindow::show_failure);
     connect(sheet, &MeasurementSheet::taken, this, [this](const QString& name, const QString& command) {
         problems_->note("Took in the measurement '" + name + "'. The same: " + command);
