@@ -54,3 +54,8 @@ class CheckFailed(Error):
 
 class UnderbodyWarning(UserWarning):
     """Something that changes what a number means."""
+
+
+# Tracebacks and pickles name them as they are called.
+for _error in (Error, InputError, UsageError, SystemError, Cancelled, Defect, CheckFailed, UnderbodyWarning):
+    _error.__module__ = "underbody"

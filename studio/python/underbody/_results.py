@@ -60,6 +60,8 @@ class Result(collections.abc.Mapping):
         return self._data
 
     def __getitem__(self, key):
+        if key not in self._data:
+            raise KeyError(self._no_such(key, [*self._data]))
         return wrapped(self._data[key])
 
     def __iter__(self):
@@ -75,10 +77,14 @@ class Result(collections.abc.Mapping):
             return wrapped(self._data[name])
         if name in self.columns:
             return self.columns[name]
-        known = [*self._data, *self.columns]
-        near = difflib.get_close_matches(name, known, 1)
-        raise AttributeError(f"there is no '{name}' in this result; "
-                             + (f"did you mean '{near[0]}'?" if near else "known: " + ", ".join(known)))
+        # With no object to search, Python adds no suggestion of its own to this one.
+        raise AttributeError(self._no_such(name, [*self._data, *self.columns]), name=name, obj=None)
+
+    @staticmethod
+    def _no_such(name, known):
+        near = difflib.get_close_matches(str(name), known, 1)
+        return f"there is no '{name}' in this result; " + (
+            f"did you mean '{near[0]}'?" if near else "known: " + ", ".join(known))
 
     def __dir__(self):
         return [*super().__dir__(), *self._data, *self.columns]
