@@ -16,7 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr const char* case_name = "ellipse-h20-p1-u0.5";
-constexpr int iterations = 30, start_iterations = 10, checkpoint_interval = 3;
+constexpr int iterations = 72, start_iterations = 24, checkpoint_interval = 9;
 
 /// Rows of forces, by iteration: those of a later start replace what was lost in a cut.
 std::map<int, std::string> force_rows(const fs::path& folder) {
@@ -105,7 +105,7 @@ TEST_F(RealSlurm, OpenFoamOnTwoCoresGoesOnFromItsDecomposedCheckpoint) {
 
     // Preempted: it goes on from there, and is cut again.
     job = submit();
-    const int second = first + 2 * checkpoint_interval;
+    const int second = first + checkpoint_interval;
     ASSERT_TRUE(solved_past(second)) << json(states()) << slurm("squeue", {}).output;
     ASSERT_EQ(
         slurm("sbatch", {"--partition=urgent", "--ntasks=2", "--output=/dev/null", "--wrap", "sleep 1"}).exit_code, 0);
