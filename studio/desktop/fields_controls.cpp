@@ -191,7 +191,8 @@ void FieldsPanel::fill_controls() {
     }
     array_->addItem("(plain)");
     const int kept = array_->findText(qt(state().fields.array));
-    array_->setCurrentIndex(kept >= 0 ? kept : 0);
+    const int pressure = array_->findText("pressure", Qt::MatchContains);  // divided by the density, as solvers have it
+    array_->setCurrentIndex(kept >= 0 ? kept : std::max(0, pressure));
     whole_range_->setChecked(state().fields.whole_range);
     edges_->setChecked(state().fields.edges);
     difference_->setChecked(state().fields.difference);

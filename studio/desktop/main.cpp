@@ -5,7 +5,6 @@
 #include <QApplication>
 #include <QFile>
 #include <QLibraryInfo>
-#include <QStyleFactory>
 #include <QSurfaceFormat>
 #include <clocale>
 #include <cstdio>
@@ -142,7 +141,7 @@ int run(int argc, char** argv) {
     QLocale::setDefault(QLocale::c());
     QApplication::setOrganizationName("Underbody");
     QApplication::setApplicationName("studio");
-    QApplication::setStyle(QStyleFactory::create("Fusion"));
+    QApplication::setStyle(window_style());
     set_theme("system");
     MainWindow window(options.screenshots.empty());
     if (!options.theme.empty()) {

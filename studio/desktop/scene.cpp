@@ -448,12 +448,12 @@ void Scene::set_ground(bool dark) {
     Parts& p = *parts_;
     p.renderer->SetBackground(dark ? 0.11 : 1, dark ? 0.12 : 1, dark ? 0.13 : 1);
     p.renderer->SetBackground2(dark ? 0.2 : 0.88, dark ? 0.22 : 0.91, dark ? 0.25 : 0.94);
-    const double ratio = p.widget->devicePixelRatioF();
-    dress_text(*p.bar->GetTitleTextProperty(), static_cast<int>(15 * ratio), dark);
-    dress_text(*p.bar->GetLabelTextProperty(), static_cast<int>(13 * ratio), dark);
+    // In points: the widget gives the window the dots per inch of its screen.
+    dress_text(*p.bar->GetTitleTextProperty(), 15, dark);
+    dress_text(*p.bar->GetLabelTextProperty(), 13, dark);
     for (auto* caption :
          {p.axes->GetXAxisCaptionActor2D(), p.axes->GetYAxisCaptionActor2D(), p.axes->GetZAxisCaptionActor2D()}) {
-        dress_text(*caption->GetCaptionTextProperty(), static_cast<int>(14 * ratio), dark);
+        dress_text(*caption->GetCaptionTextProperty(), 14, dark);
     }
 }
 

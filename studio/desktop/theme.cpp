@@ -1,7 +1,11 @@
 #include "studio/desktop/theme.h"
 
 #include <QApplication>
+#include <QPainter>
 #include <QPalette>
+#include <QProxyStyle>
+#include <QStyleFactory>
+#include <QStyleOption>
 #include <QToolTip>
 
 namespace underbody::studio {
@@ -29,7 +33,27 @@ QPalette palette_of(bool dark) {
     return palette;
 }
 
+/// Fusion, whose boxes to tick have a frame darker than the window: in the dark it is not seen.
+class Style : public QProxyStyle {
+public:
+    Style() : QProxyStyle(QStyleFactory::create("Fusion")) {}
+
+    void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                       const QWidget* widget) const override {
+        QProxyStyle::drawPrimitive(element, option, painter, widget);
+        if (element == PE_IndicatorCheckBox || element == PE_IndicatorItemViewItemCheck) {
+            painter->save();
+            painter->setPen(option->palette.color(QPalette::PlaceholderText));
+            painter->setBrush(Qt::NoBrush);
+            painter->drawRect(option->rect.adjusted(0, 0, -1, -1));
+            painter->restore();
+        }
+    }
+};
+
 }  // namespace
+
+QStyle* window_style() { return new Style; }
 
 const QStringList& theme_names() {
     static const QStringList names = {"system", "light", "dark"};

@@ -12,6 +12,8 @@
 #include <QComboBox>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QPainter>
+#include <QStyleOption>
 #include <QTableWidget>
 #include <QTest>
 
@@ -23,6 +25,7 @@
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/take_in_sheet.h"
+#include "studio/desktop/theme.h"
 #include "studio/desktop/unit_sheet.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -41,6 +44,41 @@ std::string without_units(std::string text) {
 }
 
 double lift_shown(FieldsPanel& fields) { return fields.numbers()->table().numbers("lift_force").at(0); }
+
+// Velocity is the first array of a solver's case, and nought on every wall: its pressure is shown, whatever it is
+// called.
+TEST_F(Window, ACaseOfASolverShowsItsPressureFirst) {
+    window_->take_files({test::data_folder() / "openfoam" / "ascii"});
+    settle(*window_);
+    ASSERT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
+    for (auto* choice : panel<FieldsPanel>().findChildren<QComboBox*>()) {
+        if (choice->accessibleName() == "Colour by") {
+            EXPECT_EQ(choice->currentText(), "kinematic pressure");
+            EXPECT_GT(choice->currentIndex(), 0) << "the case no longer tests it";
+        }
+    }
+}
+
+// Boxes to tick have a rim that is seen in either theme, in lists too.
+TEST_F(Window, BoxesToTickAreSeen) {
+    const std::unique_ptr<QStyle> style(window_style());
+    for (const char* theme : {"light", "dark"}) {
+        set_theme(theme);
+        QStyleOptionViewItem option;
+        option.rect = QRect(0, 0, 14, 14);
+        option.palette = QApplication::palette();
+        for (const auto element : {QStyle::PE_IndicatorCheckBox, QStyle::PE_IndicatorItemViewItemCheck}) {
+            QImage image(14, 14, QImage::Format_RGB32);
+            const QColor ground = option.palette.color(QPalette::Base);
+            image.fill(ground);
+            QPainter painter(&image);
+            style->drawPrimitive(element, &option, &painter, nullptr);
+            painter.end();
+            EXPECT_GT(std::abs(qGray(image.pixel(0, 7)) - qGray(ground.rgb())), 60) << theme;
+        }
+    }
+    set_theme("system");
+}
 
 // A file whose units are not said is asked for, not failed; the answer is one action, undone as any other.
 TEST_F(Window, UnitsThatAFileDoesNotSayAreAsked) {
