@@ -18,6 +18,8 @@ using dynamics::Channel;
 
 namespace {
 
+constexpr double tables_margin = 6;  ///< standard deviations of a reading: no noise takes it so far beyond a table
+
 void remark(core::Problems& problems, const std::string& text, const std::string& file) {
     problems.push_back({core::Problem::Severity::warning, text, core::Place{file, {}, {}, {}}});
 }
@@ -286,9 +288,13 @@ void keep_first_of_steps(const std::vector<double>& time, const std::vector<doub
     record.gap_share.assign(record.time.size(), 1);
 }
 
-/// Why the declared model cannot run this run; empty where it can. `doubt` is filled where it can with a reserve.
-std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& doubt,
-                       bool& unit) {
+std::string tables_of(const dynamics::HeavePlant& plant) {
+    return "(" + core::format_number(plant.terms.table_lower, 4) + " to " +
+           core::format_number(plant.terms.table_upper, 4) + " m)";
+}
+
+/// Why the declared model cannot run this run; empty where it can.
+std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, bool& unit) {
     const double lower = plant.terms.table_lower;
     const double upper = plant.terms.table_upper;
     if (lower < -1e299 || upper > 1e299) {
@@ -300,7 +306,7 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
     const auto inside = [&](double value) {
         return value > lower - 0.05 * (upper - lower) && value < upper + 0.05 * (upper - lower);
     };
-    const std::string where = "(" + core::format_number(lower, 4) + " to " + core::format_number(upper, 4) + " m)";
+    const std::string where = tables_of(plant);
     unit = false;
     if (!inside(middle)) {
         unit = inside(middle * 1e-3) || inside(middle * 1e3);
@@ -320,12 +326,39 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
                " % of its time outside the tables of the declared model " + where +
                (unit ? ": a thousandth or a thousandfold would fit" : "");
     }
-    if (outside > 0.02) {
-        doubt = "spends " + core::format_number(100 * outside, 3) +
-                " % of its time outside the tables of the declared model " + where +
-                ", where they hold their end values: what is found there may be the missing table";
-    }
     return "";
+}
+
+/// Leaves the longest stretch in which no reading lies outside the tables by more than `margin`: beyond them the model
+/// says nothing, and a body that came back from there would be given an effect for what the tables lack. The share of
+/// the steps that were outside, or 0.
+double keep_inside_tables(HeaveRecord& record, double margin) {
+    const double lower = record.plant->terms.table_lower - margin;
+    const double upper = record.plant->terms.table_upper + margin;
+    const std::size_t count = record.time.size();
+    std::size_t first = 0, last = 0, begin = 0, outside = 0;  // longest stretch [first, last), and where this one began
+    for (std::size_t k = 0; k <= count; ++k) {
+        const bool out = k < count && (record.gap[k] < lower || record.gap[k] > upper);
+        outside += out ? 1 : 0;
+        if (out || k == count) {
+            if (k - begin > last - first) {
+                first = begin;
+                last = k;
+            }
+            begin = k + 1;
+        }
+    }
+    if (outside == 0) {
+        return 0;
+    }
+    for (std::vector<double>* values :
+         {&record.time, &record.gap, &record.gap_share, &record.velocity, &record.velocity_share, &record.lift_scale}) {
+        if (!values->empty()) {  // not measured, or no condition changes
+            *values = {values->begin() + static_cast<std::ptrdiff_t>(first),
+                       values->begin() + static_cast<std::ptrdiff_t>(last)};
+        }
+    }
+    return static_cast<double>(outside) / static_cast<double>(count);
 }
 
 /// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.
@@ -544,14 +577,10 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             ++still;
             continue;
         }
-        std::string doubt;
-        const std::string reason = cannot_run(gap, *plant, doubt, unit);
+        const std::string reason = cannot_run(gap, *plant, unit);
         if (!reason.empty()) {
             remark(result.problems, run.name + " is left out: " + reason, file);
             continue;
-        }
-        if (!doubt.empty()) {
-            remark(result.problems, run.name + " " + doubt, file);
         }
         const std::vector<double> pushed = run.values("input_force");
         const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
@@ -619,6 +648,17 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                 }
                 result.velocity_measured = true;
             }
+        }
+        if (const double outside = keep_inside_tables(record, tables_margin * noise); outside > 0) {
+            const std::string used = record.time.empty() ? "nothing of it is"
+                                                         : "only " + core::format_number(record.time.front(), 4) +
+                                                               " to " + core::format_number(record.time.back(), 4) +
+                                                               " s, the longest stretch inside, are";
+            remark(result.problems,
+                   run.name + " spends " + core::format_number(100 * outside, 3) +
+                       " % of its time outside the tables of the declared model " + tables_of(*plant) +
+                       ", where nothing is known of the force: " + used + " used",
+                   file);
         }
         read_input(run, model.records, record);
         result.input_recorded = result.input_recorded || run.has("input_force");

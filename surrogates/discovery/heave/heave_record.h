@@ -49,8 +49,9 @@ struct HeaveRecords {
 };
 
 /// Outliers (beyond 8 robust deviations from a running median) are dropped with a remark; stuck sensors, runs without
-/// motion, runs outside the tables, swapped or mis-scaled channels are reported. Runs that cannot be used are left out
-/// with a remark. Throws core::InputError when no run is left.
+/// motion, runs outside the tables, swapped or mis-scaled channels are reported. Of a run that leaves the tables for a
+/// while the longest stretch inside is used. Runs that cannot be used are left out with a remark. Throws
+/// core::InputError when no run is left.
 HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data);
 
 }  // namespace underbody::discovery

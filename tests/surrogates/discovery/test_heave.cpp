@@ -376,6 +376,40 @@ TEST(HeaveInput, RunsOutsideTheDeclaredTablesAreRefusedWithTheirGaps) {
     }
 }
 
+TEST(HeaveInput, WhatHappensOutsideTheTablesIsNoEffect) {
+    // A tether throws the body through the lower end of the table, where the ground pushes back by a law that nobody
+    // declared: of those runs the stretch after it is used, and the tether is found alone.
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    const auto tether_and_ground = [](double, double h, double) {
+        return -3 * (h - 0.02) + (h < 0.001 ? 40 * (0.001 - h) : 0);
+    };
+    dynamics::Measurements data = test::heave_runs(tether_and_ground, 6, 50, 31);
+    const HeaveRecords records = prepare_heave_records(model, data);
+    ASSERT_EQ(records.records.size(), 6U);
+    std::size_t cut = 0;
+    for (const HeaveRecord& record : records.records) {
+        const std::vector<double> all = data.runs[record.run].table.numbers("gap");
+        cut += *std::min_element(all.begin(), all.end()) < -0.003 ? 1 : 0;
+        EXPECT_GT(*std::min_element(record.gap.begin(), record.gap.end()), 0.001 - 6.5 * 2e-4) << record.name;
+        EXPECT_GT(record.time.back() - record.time.front(), 15) << record.name;
+        EXPECT_EQ(record.held_input.size(), record.time.size()) << record.name;
+        EXPECT_EQ(record.gap_share.size(), record.time.size()) << record.name;
+        EXPECT_EQ(record.raw_time.size(), all.size()) << record.name;  // what was commanded before is known
+    }
+    EXPECT_GT(cut, 1U);
+    EXPECT_TRUE(says(records.problems, "outside the tables of the declared model (0.001 to 1.6 m)"));
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    const Discovery found = discover(model, data, options);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "tether_stiffness");
+    EXPECT_NEAR(found.effects[0].parameters[0].value, 3, 0.05);
+    EXPECT_NEAR(found.effects[0].parameters[1].value, 0.02, 1e-3);
+    EXPECT_LT(found.error.front().after.rmse, 1.3 * 2e-4);
+}
+
 TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
     const Discovery found = found_on_changed([](dynamics::Measurements& data) {
         for (auto& run : data.runs) {
