@@ -5,7 +5,12 @@
 #include <memory>
 #include <string>
 namespace rclcpp {
-struct Time {};
+struct Duration {
+    double seconds() const;
+};
+struct Time {
+    Duration operator-(const Time& earlier) const;
+};
 struct TimerBase {
     using SharedPtr = std::shared_ptr<TimerBase>;
 };
