@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cases/design.h"
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -39,7 +40,7 @@ Figure left_out_figure(const Surrogate& surrogate) {
     figure.x = {"computed", surrogate.unit()};
     figure.y = {"predicted without the shape", surrogate.unit()};
     core::FigurePoints points;
-    points.name = std::to_string(check.points) + " runs of " + std::to_string(check.shapes) + " shapes";
+    points.name = core::counted(check.points, "run") + " of " + core::counted(check.shapes, "shape");
     points.x = check.measured;
     points.y = check.predicted;
     for (const double s : check.sigma) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cases/design.h"
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/variants.h"
@@ -105,7 +106,7 @@ std::string KnownLift::words() const {
         case Basis::this_shape:
             return "CFD of this shape (" + of + ")";
         case Basis::surrogate: {
-            std::string text = "surrogate over the " + std::to_string(shapes) + " shapes of the search";
+            std::string text = "surrogate over the " + core::counted(shapes, "shape") + " of the search";
             text += run ? ", this shape is one of them" : "; not CFD of this one";
             return text + (outside.empty() ? "" : "; extrapolated: " + outside + " beyond the searched range");
         }

@@ -9,6 +9,7 @@
 #include "cases/engine.h"
 #include "cases/percent.h"
 #include "cases/report_tables.h"
+#include "core/counted.h"
 #include "core/html.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -398,8 +399,8 @@ private:
         for (const auto& spec : engine_.study.verifications) {
             if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
                 page_.paragraph("Our loads against the solver's own " + spec.name + " (" +
-                                spec.table.filename().string() + "): " + std::to_string(check->values) +
-                                " values compared; beyond twice what the run itself swings by, the worst differs by " +
+                                spec.table.filename().string() + "): " + core::counted(check->values, "value") +
+                                " compared; beyond twice what the run itself swings by, the worst differs by " +
                                 percent_of(check->worst, "the force's size") + " (" + check->worst_case +
                                 "); allowed " + percent(check->tolerance) + ", beyond it " +
                                 std::to_string(check->failed) +
@@ -441,7 +442,7 @@ private:
         }
         page_.section("Loads of all cases");
         const ReportTable shown_loads = loads_of_all_cases(engine_.study, engine_.results);
-        page_.folded_table(std::to_string(shown_loads.rows.size()) + " cases", shown_loads.header, shown_loads.rows);
+        page_.folded_table(core::counted(shown_loads.rows.size(), "case"), shown_loads.header, shown_loads.rows);
         page_.paragraph(
             "Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
             "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "

@@ -5,6 +5,7 @@
 
 #include "cases/engine.h"
 #include "cases/export_files.h"
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -58,8 +59,8 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     document["quantity"] = spec.quantity;
     document["kind"] = table.kind();
     document["points"] = core::write_csv(points);
-    document["remarks"] =
-        nlohmann::json::array({"Fitted by " + table.kind() + " through " + std::to_string(points.rows()) + " points."});
+    document["remarks"] = nlohmann::json::array(
+        {"Fitted by " + table.kind() + " through " + core::counted(points.rows(), "point") + "."});
     for (const auto& remark : mixed) {
         document["remarks"].push_back(remark);
     }

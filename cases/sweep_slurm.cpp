@@ -14,6 +14,7 @@
 #include "cases/child_process.h"
 #include "cases/lock.h"
 #include "cases/sweep_parts.h"
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
@@ -344,7 +345,8 @@ std::vector<SweepCase> wait_for_sweep(const Study& study, core::Progress& progre
         if (open == 0) {
             return cases;
         }
-        progress.report(done / static_cast<double>(cases.size()), std::to_string(open) + " cases wait or run");
+        progress.report(done / static_cast<double>(cases.size()),
+                        core::counted(open, "case waits or runs", "cases wait or run"));
         const auto until = std::chrono::steady_clock::now() + pause;
         while (std::chrono::steady_clock::now() < until) {
             progress.check();

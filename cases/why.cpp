@@ -11,6 +11,7 @@
 
 #include "cases/engine.h"
 #include "cases/why_names.h"
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
@@ -319,9 +320,10 @@ private:
             return false;
         }
         if (found.size() > 1) {
-            throw core::InputError("name",
-                                   std::to_string(found.size()) + " results say a '" + name + "': " + listed(found),
-                                   place(), "ask for one of them by its whole name");
+            throw core::InputError(
+                "name",
+                core::counted(found.size(), "result says", "results say") + " a '" + name + "': " + listed(found),
+                place(), "ask for one of them by its whole name");
         }
         answer(found.front(), {});
         return true;

@@ -66,8 +66,11 @@ void add_error(nlohmann::json& json, const dynamics::TrimError& error) {
     }
 }
 
-/// A state that nothing brings back and nothing drives away, such as heading or place.
-bool neutral(const dynamics::Mode& mode) { return std::abs(mode.value) < 1e-7; }
+/// Neither decays nor grows: a state that nothing brings back, such as heading or place, or a swing without damping.
+bool neutral(const dynamics::Mode& mode) {
+    const double size = std::abs(mode.value);
+    return size < 1e-7 || (!mode.stable && std::abs(mode.value.real()) < 1e-7 * size);
+}
 
 nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vector<dynamics::Mode>& modes,
                            const dynamics::TrimError& error = {}) {
@@ -104,8 +107,9 @@ std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& err
     constexpr double two_pi = 6.283185307179586;
     std::string text = "  " + mode.name + ": ";
     if (mode.value.imag() != 0) {
-        text += core::format_number(mode.value.real(), 5) + " +- " + core::format_number(mode.value.imag(), 5) +
-                " i 1/s, " + with_error(mode.frequency / two_pi, error.frequency / two_pi, 4) + " Hz, damping ratio " +
+        text += core::format_number(neutral(mode) ? 0 : mode.value.real(), 5) + " +- " +
+                core::format_number(mode.value.imag(), 5) + " i 1/s, " +
+                with_error(mode.frequency / two_pi, error.frequency / two_pi, 4) + " Hz, damping ratio " +
                 with_error(mode.damping_ratio, error.damping_ratio, 3);
     } else {
         text += with_error(mode.value.real(), error.real, 5) + " 1/s";

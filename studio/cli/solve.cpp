@@ -13,6 +13,7 @@
 #include "cases/openfoam_run.h"
 #include "cases/sweep.h"
 #include "cases/sweep_slurm.h"
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/parallel.h"
@@ -197,7 +198,7 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
     const auto& arrays = all.arrays;
     nlohmann::json json = nlohmann::json::array();
     for (const auto& array : arrays) {
-        shell.print("wrote " + array.script.string() + " of " + std::to_string(array.names.size()) + " cases" +
+        shell.print("wrote " + array.script.string() + " of " + core::counted(array.names.size(), "case") +
                     (array.job.empty()
                          ? "; 'sbatch' is not here: submit it where Slurm is, in a folder that both machines see"
                          : "; submitted as job " + array.job));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/percent.h"
+#include "core/counted.h"
 #include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -116,7 +117,7 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
                         core::format_number(100 * check.worst, 3) + " % (" + check.worst_case + ")");
         }
     }
-    shell.print(std::to_string(results.computed) + " results computed, " + std::to_string(results.reused) +
+    shell.print(core::counted(results.computed, "result") + " computed, " + std::to_string(results.reused) +
                 " unchanged, " + std::to_string(results.failed) + " failed");
     return results.failed == 0 ? done : wrong_input;
 }
@@ -184,12 +185,12 @@ int list(Shell& shell, const StudyArguments& arguments) {
         shell.print_json({{"title", study.title}, {"cases", json}, {"notes", json_of_notes(study, results.notes)}});
         return done;
     }
-    shell.print(study.title + ": " + std::to_string(study.cases.size()) + " cases\n" + aligned(rows));
+    shell.print(study.title + ": " + core::counted(study.cases.size(), "case") + "\n" + aligned(rows));
     show_notes(shell, study);
     print_warnings(shell, results);
     if (changed > 0) {
-        shell.print("changed: for " + std::to_string(changed) +
-                    " cases, files, options or code are no longer those of the stored loads; underbody study run "
+        shell.print("changed: for " + core::counted(changed, "case") +
+                    ", files, options or code are no longer those of the stored loads; underbody study run "
                     "computes them again");
     }
     return done;
@@ -215,7 +216,7 @@ int verify(Shell& shell, const StudyArguments& arguments) {
         }
         json[spec.name] = nlohmann::json::parse(*results.document("verify/" + spec.name));
         failed += check->failed;
-        shell.print(spec.name + ": " + std::to_string(check->values) + " values compared, worst " +
+        shell.print(spec.name + ": " + core::counted(check->values, "value") + " compared, worst " +
                     cases::percent_of(check->worst, "the force's size") + " (" + check->worst_case + "), allowed " +
                     cases::percent(check->tolerance) + ", " + std::to_string(check->failed) + " beyond it");
     }

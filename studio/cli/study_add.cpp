@@ -5,6 +5,7 @@
 
 #include "cases/add_cases.h"
 #include "cases/add_measurement.h"
+#include "core/counted.h"
 #include "core/text.h"
 #include "studio/cli/study_parts.h"
 
@@ -103,7 +104,7 @@ int add(Shell& shell, const StudyArguments& arguments) {
     show_notes(shell, added.study);
     cases::write_added(added);
     const nlohmann::json passed_over = show_left_out(added, shell);
-    shell.print(std::to_string(added.count) + " cases added to " + added.file.string());
+    shell.print(core::counted(added.count, "case") + " added to " + added.file.string());
     if (shell.json) {
         shell.print_json({{"added", added.count},
                           {"study", added.file.string()},

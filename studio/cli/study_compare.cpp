@@ -6,6 +6,7 @@
 
 #include "cases/compare_studies.h"
 #include "cases/percent.h"
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/study_parts.h"
@@ -121,7 +122,7 @@ std::string summary(const cases::StudyComparison& c) {
         text += "they differ as a whole in " + one.condition + ": " + (one.a.empty() ? "(none)" : one.a) + " | " +
                 (one.b.empty() ? "(none)" : one.b) + "\n";
     }
-    text += std::to_string(c.cases) + " cases on both sides";
+    text += core::counted(c.cases, "case") + " on both sides";
     text += c.only_a.empty() ? "" : "; only in A " + std::to_string(c.only_a.size()) + ": " + names_text(c.only_a);
     text += c.only_b.empty() ? "" : "; only in B " + std::to_string(c.only_b.size()) + ": " + names_text(c.only_b);
     if (c.unsettled_a + c.unsettled_b > 0) {
@@ -179,7 +180,7 @@ cases::StudyResults results_of_side(Shell& shell, const StudyArguments& argument
         }
     }
     if (arguments.as_stored && results.changed > 0) {
-        shell.print("note: " + std::to_string(results.changed) + " results of '" + study.title +
+        shell.print("note: " + core::counted(results.changed, "result") + " of '" + study.title +
                     "' are compared as the store has them: files, options or code have changed since");
     }
     return results;

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "cases/why.h"
+#include "core/counted.h"
 #include "core/text.h"
 #include "studio/cli/study_parts.h"
 
@@ -100,7 +101,7 @@ std::vector<std::string> brief(const cases::Origin& origin) {
     files += read.size() > 2 ? " and " + std::to_string(read.size() - 2) + " more" : "";
     return {origin.kind + " '" + origin.name + "'",
             says,
-            zones > 0 ? std::to_string(zones) + " zones" : "",
+            zones > 0 ? core::counted(zones, "zone") : "",
             solver,
             files,
             origin.state == cases::StepState::unchanged ? "" : "changed since"};

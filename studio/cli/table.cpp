@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -38,11 +39,11 @@ int run_fit(Shell& shell, const FitCommand& command) {
     for (const auto& table : all) {
         nlohmann::json entry = table;
         std::string text =
-            table.quantity() + ": " + table.kind() + " through " + std::to_string(table.points().rows()) + " points";
+            table.quantity() + ": " + table.kind() + " through " + core::counted(table.points().rows(), "point");
         for (const auto& axis : table.axes()) {
             text += "\n  " + axis.name + " " + shown(table, axis.name, axis.unit, axis.lower) + " to " +
-                    shown(table, axis.name, axis.unit, axis.upper) + ", " + std::to_string(axis.points.size()) +
-                    " set points";
+                    shown(table, axis.name, axis.unit, axis.upper) + ", " +
+                    core::counted(axis.points.size(), "set point");
         }
         for (const auto& remark : table.remarks()) {
             text += "\n  " + remark.message;
@@ -212,9 +213,9 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     std::string weight_from = command.weight.empty() ? "default" : "given";
     options.net_weight = command.weight.empty() ? 0 : option_value("--weight", command.weight, "N");
     options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
+    command.table.describe(of_model);
     if (command.table.is_model()) {
         weight_from = take_vehicle(shell, command, options);
-        command.table.describe(of_model);
         of_model["net_weight_from"] = weight_from;
     }
     options.damping = command.damping.empty() ? 0 : option_value("--damping", command.damping, "N s/m");

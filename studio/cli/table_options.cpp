@@ -147,6 +147,19 @@ std::vector<dynamics::ForceAxis> axes_of(const std::string& text) {
     return axes;
 }
 
+/// Says them where the values are read (on stderr where the text is a list of files), and keeps what is no note for the
+/// document.
+void tell(Shell& shell, const core::Problems& remarks, bool on_stdout, core::Problems& warnings) {
+    on_stdout ? shell.remark(remarks) : shell.show(remarks);
+    for (const core::Problem& remark : remarks) {
+        const bool known = std::any_of(warnings.begin(), warnings.end(),
+                                       [&](const core::Problem& one) { return one.message == remark.message; });
+        if (!known && remark.severity != core::Problem::Severity::note) {
+            warnings.push_back(remark);
+        }
+    }
+}
+
 }  // namespace
 
 core::Table TableOptions::points(Shell& shell) const {
@@ -222,17 +235,16 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
     }
     for (const auto& table : found.tables) {
         if (remarks) {
-            shell.show(table.remarks());
+            tell(shell, table.remarks(), print_held, warnings_);
         }
     }
     return std::move(found.tables);
 }
 
 void TableOptions::describe(nlohmann::json& document) const {
-    if (!is_model()) {
-        return;
+    if (is_model()) {
+        document["held"] = nlohmann::json::object();
     }
-    document["held"] = nlohmann::json::object();
     for (const dynamics::HeldChannel& held : held_) {
         document["held"][channel_name(held.channel)] = {
             {"value", held.value}, {"unit", channel_unit(held.channel)}, {"from", held.from}};
@@ -252,7 +264,7 @@ tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     }
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
-    shell.show(fitted.remarks());
+    tell(shell, fitted.remarks(), print_held, warnings_);
     return fitted;
 }
 
@@ -268,7 +280,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
     for (const auto& name : quantities_of(table, quantity)) {
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));
         if (remarks) {
-            shell.show(all.back().remarks());
+            tell(shell, all.back().remarks(), print_held, warnings_);
         }
     }
     return all;

@@ -270,6 +270,29 @@ TEST_F(DynamicsCommands, LinearTakesAVehicleWithoutJets) {
     }
 }
 
+TEST_F(DynamicsCommands, ASwingWithoutDampingIsNeutralAndNotUnstable) {
+    core::write_file(folder_.path() / "undamped.toml",
+                     "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.754\n"
+                     "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\n");
+    std::size_t swings = 0;
+    const nlohmann::json found = json({"linear", "undamped.toml"});
+    for (const auto& equilibrium : found["heave"]) {
+        for (const auto& mode : equilibrium["modes"]) {
+            if (mode["imaginary"].get<double>() != 0) {
+                ++swings;
+                EXPECT_TRUE(mode["neutral"].get<bool>()) << mode;
+                EXPECT_NEAR(mode["damping_ratio"].get<double>(), 0, 1e-9);
+            } else if (mode["real"].get<double>() > 1e-3) {
+                EXPECT_FALSE(mode["neutral"].get<bool>()) << mode;
+            }
+        }
+    }
+    EXPECT_GT(swings, 0U);
+    const auto text = run_underbody({"linear", "undamped.toml"}, folder_.path()).output;
+    EXPECT_NE(text.find("damping ratio 0  neutral\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("-0 +-"), std::string::npos) << text;
+}
+
 TEST_F(DynamicsCommands, LinearSaysThatHeaveAloneHoldsThePitch) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
     const auto run = run_underbody({"linear", evie}, folder_.path());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -69,7 +70,14 @@ TEST_F(ModelForces, TableAtTakesTheConditionsOfTheModelUnlessThePointSaysOtherwi
     model("outside.toml", "[conditions]\nspeed = \"3 m/s\"\n");
     EXPECT_THAT(run_underbody({"table", "at", "outside.toml", "gap=4mm"}, folder_.path()).output,
                 HasSubstr("speed 3 m/s is outside the lift_force table"));
-    EXPECT_EQ(json({"table", "at", "outside.toml", "gap=4mm"})["warnings"].size(), 1U);
+    const nlohmann::json outside = json({"table", "at", "outside.toml", "gap=4mm"});
+    EXPECT_EQ(std::count_if(outside["warnings"].begin(), outside["warnings"].end(),
+                            [](const nlohmann::json& warning) {
+                                return warning.get<std::string>().find("speed 3 m/s is outside the lift_force table") !=
+                                       std::string::npos;
+                            }),
+              1)
+        << outside["warnings"];
 }
 
 TEST_F(ModelForces, EquilibriaAndLinearAgreeWithTheTableOnGapAndError) {

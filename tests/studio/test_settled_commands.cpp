@@ -105,6 +105,10 @@ TEST_F(SettledCommands, WhatRestsOnForceTablesSaysItInTextAndJson) {
     // Free runs: their column of input is nought all along, and no law of it may be looked for.
     const std::string sentence = "1 of the 8 points are of solutions that have not settled: row 2";
     for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
+             {"table", "at", "lift.csv", "gap=6mm"},
+             {"table", "at", "model.toml", "gap=6mm"},
+             {"table", "equilibria", "lift.csv", "--weight", "0.8 N"},
+             {"table", "equilibria", "model.toml"},
              {"predict", "model.toml", "--data", "data"},
              {"estimate", "model.toml", "--data", "data"},
              {"learn", "model.toml"},

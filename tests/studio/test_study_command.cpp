@@ -112,8 +112,18 @@ TEST_F(StudyCommand, AddRefusesAMistypedConditionAndSaysWhatItLeavesOut) {
     const auto added = run_underbody(
         {"study", "add", study.string(), "--files", "more/{variant}-h{gap:mm}.csv", "--condition", "speed=0.5"});
     ASSERT_EQ(added.exit_code, 0) << added.errors;
-    EXPECT_THAT(added.output, testing::AllOf(HasSubstr("1 cases added"), HasSubstr("1 file is left out"),
+    EXPECT_THAT(added.output, testing::AllOf(HasSubstr("1 case added"), HasSubstr("1 file is left out"),
                                              HasSubstr("box-h2mm.csv: '2mm' carries its unit: write {gap:mm}mm")));
+}
+
+TEST_F(StudyCommand, OneCaseIsCountedInTheSingular) {
+    const fs::path one = scratch.path() / "one";
+    fs::create_directories(one);
+    core::write_file(one / "cube-h3.csv", cube_field(0.003, 400));
+    ASSERT_EQ(run_underbody({"study", "add", one.string(), "--files", "cube-h{gap:mm}.csv"}).exit_code, 0);
+    EXPECT_THAT(run_underbody({"study", "list", one.string()}).output, HasSubstr(": 1 case\n"));
+    const auto ran = run_underbody({"study", "run", one.string(), "--no-pictures"});
+    EXPECT_THAT(ran.output, HasSubstr("1 result computed, 0 unchanged")) << ran.errors;
 }
 
 TEST_F(StudyCommand, RecomputesNothingWhenNothingChangedAndOnlyWhatChangedOtherwise) {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/text.h"
 
 namespace underbody::dynamics {
@@ -10,7 +11,7 @@ std::vector<std::string> fit_lines(const Model& model) {
     std::vector<std::string> lines;
     for (const ForceSource& source : model.forces) {
         lines.push_back(source.quantity + " of " + source.table_file + ": " + source.table.kind() + " through " +
-                        std::to_string(source.table.points().rows()) + " points");
+                        core::counted(source.table.points().rows(), "point"));
     }
     return lines;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/estimator/observe/prepared_runs.h"
 
@@ -28,14 +29,14 @@ RunSplit split_runs(const dynamics::Measurements& data, bool hold_out) {
                                {data.folder.string(), {}, {}, {}});
     }
     if (split.test.runs.empty()) {
-        split.how = std::to_string(split.train.runs.size()) + " runs to learn from";
+        split.how = core::counted(split.train.runs.size(), "run") + " to learn from";
         if (hold_out) {
             split.test = split.train;
             split.how = "one run to learn from and to test on: its errors are too good";
         }
         return split;
     }
-    split.how = std::to_string(split.train.runs.size()) + " runs to learn from, " +
+    split.how = core::counted(split.train.runs.size(), "run") + " to learn from, " +
                 std::to_string(split.test.runs.size()) + " to test on, " +
                 (marked ? "as the data set says" : "by the program's choice");
     return split;
@@ -150,8 +151,8 @@ TrainingSet training_from_runs(const dynamics::Model& model, const dynamics::Mea
     }
     set.outside = static_cast<double>(outside) / static_cast<double>(set.count);
     if (outside > 0) {
-        note(set.remarks, std::to_string(outside) + " of " + std::to_string(set.count) +
-                              " samples lie beyond the force table, where it holds its end value");
+        note(set.remarks, std::to_string(outside) + " of " + core::counted(set.count, "sample lies", "samples lie") +
+                              " beyond the force table, where it holds its end value");
     }
     return set;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/fit/table_batch.h"
@@ -175,7 +176,7 @@ void add_equilibria(core::Figure& figure, const ForceTable& table, std::size_t a
 }
 
 std::string caption_of(const ForceTable& table) {
-    std::string text = table.kind() + " of " + std::to_string(table.points().rows()) + " points";
+    std::string text = table.kind() + " of " + core::counted(table.points().rows(), "point");
     if (!table.source().empty()) {
         text += " of " + table.source();
     }
