@@ -1,8 +1,9 @@
 // Conditions of cases: what they are called, their units, and which fits which.
+#include "cases/conditions.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "cases/study.h"
 #include "core/text.h"
 #include "core/units.h"
 

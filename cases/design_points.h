@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/study.h"
+#include "cases/study_spec.h"
 #include "core/error.h"
 #include "core/toml.h"
 

@@ -1,7 +1,7 @@
 #include "cases/study_format.h"
 
 #include "cases/design_spec.h"
-#include "cases/study.h"
+#include "cases/study_spec.h"
 #include "core/text.h"
 #include "core/units.h"
 

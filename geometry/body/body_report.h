@@ -14,8 +14,8 @@
 #include "geometry/body/mass_properties.h"
 #include "geometry/mesh/surface_mesh.h"
 #include "geometry/water/added_mass.h"
-#include "geometry/water/loading.h"
 #include "geometry/water/placement.h"
+#include "geometry/water/trim.h"
 
 namespace underbody::geometry {
 

@@ -6,8 +6,8 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
+#include "geometry/body/loading.h"
 #include "geometry/body/shape_format.h"
-#include "geometry/water/loading.h"
 
 namespace underbody::geometry {
 

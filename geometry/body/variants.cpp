@@ -9,8 +9,8 @@
 #include "core/units.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/exact_body.h"
+#include "geometry/body/loading.h"
 #include "geometry/body/shape_format.h"
-#include "geometry/water/loading.h"
 
 namespace underbody::geometry {
 

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "postproc/field/field.h"
+#include "postproc/field/surface_arrays.h"
 #include "postproc/loads/face_integral.h"
-#include "postproc/loads/loads.h"
+#include "postproc/loads/loads_result.h"
 
 namespace underbody::postproc {
 

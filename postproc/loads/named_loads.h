@@ -1,7 +1,7 @@
 // A force in the vehicle's sense.
 #pragma once
 
-#include "postproc/loads/loads.h"
+#include "postproc/loads/loads_result.h"
 #include "postproc/loads/vehicle_axes.h"
 
 namespace underbody::postproc {

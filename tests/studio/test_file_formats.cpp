@@ -14,7 +14,7 @@
 #include "core/units.h"
 #include "geometry/body/body_shape.h"
 #include "geometry/body/variants.h"
-#include "geometry/water/loading.h"
+#include "geometry/water/trim.h"
 #include "surrogates/dynamics/model/effect.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"

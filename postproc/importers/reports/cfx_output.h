@@ -5,7 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/importers/reports/reports.h"
+#include "postproc/importers/reports/force_report.h"
+#include "postproc/importers/reports/monitor.h"
 
 namespace underbody::postproc {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "postproc/importers/reports/reports.h"
+#include "postproc/importers/reports/monitor.h"
 
 namespace underbody::postproc {
 

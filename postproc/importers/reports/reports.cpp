@@ -311,24 +311,6 @@ void add_row(std::vector<ForceReport>& reports, std::size_t first, std::string_v
 
 }  // namespace
 
-const std::vector<double>* Monitor::find(const std::string& column) const {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        if (columns[c] == column) {
-            return &values[c];
-        }
-    }
-    return nullptr;
-}
-
-const ReportedForce* ForceReport::net() const {
-    for (const auto& row : rows) {
-        if (row.zone == "Net") {
-            return &row;
-        }
-    }
-    return nullptr;
-}
-
 Monitor read_monitor(const std::filesystem::path& path) {
     const ReportText file(path);
     const std::string_view bytes = file.bytes();

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "postproc/importers/reports/reports.h"
+#include "postproc/importers/reports/monitor.h"
 
 namespace underbody::postproc {
 

@@ -4,14 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "core/random.h"
 #include "core/text.h"
-#include "core/units.h"
 #include "surrogates/tables/fit/fit.h"
 #include "surrogates/tables/fit/force_table_impl.h"
 #include "surrogates/tables/fit/hull.h"
-#include "surrogates/tables/fit/table_batch.h"
-#include "surrogates/tables/fit/table_json.h"
 #include "surrogates/tables/points/select.h"
 #include "surrogates/tables/points/set_points.h"
 
@@ -109,10 +105,6 @@ double ForceTable::value_by_policy(const double* point, double* slope, unsigned 
     return going_on == 0 ? impl_->surface.value(point, slope) : impl_->surface.continued(point, slope, going_on);
 }
 
-void values(const ForceTable& table, const double* points, std::size_t count, double* value, double* slope) noexcept {
-    table.impl().surface.values(points, count, value, slope);
-}
-
 Evaluation ForceTable::at(std::span<const double> point) const {
     const Impl& t = *impl_;
     const std::size_t n = t.axes.size();
@@ -140,33 +132,6 @@ Evaluation ForceTable::at(std::span<const double> point) const {
 
 const Support* ForceTable::Impl::data_support() const {
     return support ? support.get() : hull ? &hull->support() : nullptr;
-}
-const Support* data_support(const ForceTable& table) { return table.impl().data_support(); }
-
-double beyond_points(const ForceTable& table, const double* point) {
-    return table.impl().hull ? table.impl().hull->distance(point) : 0;
-}
-
-core::Problems outside_remarks(const ForceTable& table, const Held& held) {
-    core::Problems remarks;
-    for (const auto& [name, value] : held) {
-        const auto& axes = table.axes();
-        const auto axis =
-            std::find_if(axes.begin(), axes.end(), [&n = name](const TableAxis& a) { return a.name == n; });
-        if (axis == axes.end() || (value >= axis->lower && value <= axis->upper)) {
-            continue;
-        }
-        const std::string unit = shown_unit(table, axis->name);
-        const double beyond = std::max(axis->lower - value, value - axis->upper);
-        std::string text = axis->name + " is outside the table by " +
-                           core::format_number(core::convert(beyond, axis->unit, unit), 5) + " " + unit + ": " +
-                           outside_words(axis->range);
-        if (const double meant = core::convert(value, unit, axis->unit); meant >= axis->lower && meant <= axis->upper) {
-            text += "; a bare number is SI, " + core::format_number(value, 6) + " " + unit + " would lie inside";
-        }
-        remarks.push_back({core::Problem::Severity::warning, text, {table.source(), {}, {}, {}}});
-    }
-    return remarks;
 }
 
 double ForceTable::sigma(const double* point) const noexcept {

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-#include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/points/table_axis.h"
 
 namespace underbody::tables {
 

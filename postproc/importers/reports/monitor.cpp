@@ -1,6 +1,6 @@
-#include <cmath>
+#include "postproc/importers/reports/monitor.h"
 
-#include "postproc/importers/reports/reports.h"
+#include <cmath>
 
 namespace underbody::postproc {
 
@@ -34,6 +34,15 @@ void MonitorRows::into(Monitor& monitor) const {
                                     std::to_string(odd) + " values are not finite: the solution has diverged",
                                     {monitor.file, {}, {}, {}}});
     }
+}
+
+const std::vector<double>* Monitor::find(const std::string& column) const {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        if (columns[c] == column) {
+            return &values[c];
+        }
+    }
+    return nullptr;
 }
 
 }  // namespace underbody::postproc

@@ -4,8 +4,8 @@
 
 #include "core/error.h"
 #include "geometry/body/body_surface.h"
-#include "geometry/water/loading.h"
 #include "geometry/water/placement.h"
+#include "geometry/water/trim.h"
 
 namespace underbody::geometry {
 namespace {
