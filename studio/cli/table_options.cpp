@@ -147,10 +147,8 @@ std::vector<dynamics::ForceAxis> axes_of(const std::string& text) {
     return axes;
 }
 
-/// Says them where the values are read (on stderr where the text is a list of files), and keeps what is no note for the
-/// document.
-void tell(Shell& shell, const core::Problems& remarks, bool on_stdout, core::Problems& warnings) {
-    on_stdout ? shell.remark(remarks) : shell.show(remarks);
+/// Keeps what is no note for the document.
+void keep(const core::Problems& remarks, core::Problems& warnings) {
     for (const core::Problem& remark : remarks) {
         const bool known = std::any_of(warnings.begin(), warnings.end(),
                                        [&](const core::Problem& one) { return one.message == remark.message; });
@@ -158,6 +156,12 @@ void tell(Shell& shell, const core::Problems& remarks, bool on_stdout, core::Pro
             warnings.push_back(remark);
         }
     }
+}
+
+/// Says them where the values are read (on stderr where the text is a list of files), and keeps them.
+void tell(Shell& shell, const core::Problems& remarks, bool on_stdout, core::Problems& warnings) {
+    on_stdout ? shell.remark(remarks) : shell.show(remarks);
+    keep(remarks, warnings);
 }
 
 }  // namespace
@@ -256,7 +260,8 @@ void TableOptions::describe(nlohmann::json& document) const {
 }
 
 tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
-    if (const auto* known = fitted(shell)) {
+    if (const auto* known = fitted(shell)) {  // its remarks were said when it was fitted
+        keep(known->front().remarks(), warnings_);
         return known->front();
     }
     if (is_model()) {
@@ -270,6 +275,11 @@ tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
 
 std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks, tables::Held* asked) const {
     if (const auto* known = fitted(shell)) {
+        for (const auto& table : *known) {
+            if (remarks) {
+                keep(table.remarks(), warnings_);
+            }
+        }
         return *known;
     }
     if (is_model()) {
