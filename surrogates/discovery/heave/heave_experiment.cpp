@@ -357,10 +357,15 @@ FlexibleForce HeaveExperiment::flat_force(const SmoothSet& set, const std::vecto
         }
     }
     for (std::vector<double>& variable : values) {
-        const double low = quantile(variable, 0.002);
-        const double high = quantile(variable, 0.998);
+        double low = quantile(variable, 0.002);
+        double high = quantile(variable, 0.998);
         for (double& value : variable) {
             value = std::clamp(value, low, high);
+        }
+        if (!(high > low)) {  // it stood still: its table needs a range all the same
+            const double range = 1e-3 * std::max(1.0, std::abs(low));
+            low -= range;
+            high += range;
         }
         force.lower.push_back(low);
         force.upper.push_back(high);

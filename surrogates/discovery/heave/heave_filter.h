@@ -39,15 +39,6 @@ struct FlexibleForce {
     /// Holds the force constant beyond what was seen; of the input, and of the velocity beside the gap, beyond half as
     /// far again.
     std::vector<double> lower, upper;
-    /// Whether every variable was seen at more than one value.
-    [[nodiscard]] bool has_ranges() const {
-        for (std::size_t v = 0; v < lower.size(); ++v) {
-            if (!(upper[v] > lower[v])) {
-                return false;
-            }
-        }
-        return true;
-    }
     [[nodiscard]] double operator()(double h, double w, double t, double u) const {
         double slope_h = 0;
         double slope_w = 0;

@@ -69,6 +69,18 @@ std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
     return steps;
 }
 
+/// Of an input that never changes (free runs with a column of noughts) no law can be seen.
+bool input_changes(const HeaveRecords& records) {
+    double low = INFINITY, high = -INFINITY;
+    for (const HeaveRecord& record : records.records) {
+        for (const double u : record.raw_input) {
+            low = std::min(low, u);
+            high = std::max(high, u);
+        }
+    }
+    return high > low;
+}
+
 }  // namespace
 
 std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experiment,
@@ -88,20 +100,21 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
             }
         }
     }
+    const bool input_moves = records_.input_recorded && input_changes(records_);
     for (const HeaveExperiment::SmoothSet& set : smooth_sets()) {
-        list.emplace_back();
-        list.back().smooth = &set;
+        const bool possible = std::none_of(set.variables.begin(), set.variables.end(),
+                                           [&](Variable v) { return v == Variable::input_force && !input_moves; });
+        if (possible) {
+            list.emplace_back();
+            list.back().smooth = &set;
+        }
     }
     core::parallel_for(list.size(), [&](std::size_t k) {
         Probe& probe = list[k];
         DesignMatrix matrix;
         matrix.rows = innovations.size();
         if (probe.smooth != nullptr) {
-            const FlexibleForce force = experiment.flat_force(*probe.smooth, uses, noise);
-            if (!force.has_ranges()) {  // no law can be seen of what stands still: an input that is not recorded
-                return;
-            }
-            matrix = experiment.answers(force, uses, noise, innovations);
+            matrix = experiment.answers(experiment.flat_force(*probe.smooth, uses, noise), uses, noise, innovations);
         } else {
             std::vector<double> there;
             for (const std::vector<double>& p : small_steps(candidates_[probe.candidate])) {
