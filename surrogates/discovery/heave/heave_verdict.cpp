@@ -64,20 +64,29 @@ void HeaveLoop::fit_pairs() {
     for (std::size_t k = 0; k < std::min(seconds_tried, rest_.second.size()); ++k) {
         add(best_single_, rest_.second[k]);
     }
-    if (singles_ > 1) {
-        const std::size_t other = order[0] == best_single_ ? order[1] : order[0];
-        const Rest beside = rest_beside(fitted_[other], noises_[other]);
-        for (std::size_t k = 0; k < std::min(seconds_tried, beside.second.size()); ++k) {
-            add(other, beside.second[k]);
+    std::set<std::size_t> asked = {best_single_};  // beside which others were looked for
+    const auto add_beside = [&](std::size_t one) {
+        if (asked.insert(one).second) {
+            const Rest beside = rest_beside(fitted_[one], noises_[one]);
+            for (std::size_t k = 0; k < std::min(seconds_tried, beside.second.size()); ++k) {
+                add(one, beside.second[k]);
+            }
         }
+    };
+    if (singles_ > 1) {
+        add_beside(order[0] == best_single_ ? order[1] : order[0]);
     }
     std::vector<FittedHypothesis> found;
     std::vector<HeaveNoise> noises;
-    fit_both(pairs, found, noises);
+    const auto fit_new = [&] {
+        const std::vector<std::pair<std::size_t, std::size_t>> more(
+            pairs.begin() + static_cast<std::ptrdiff_t>(found.size()), pairs.end());
+        fit_both(more, found, noises);
+    };
+    fit_new();
     if (!found.empty()) {
         // either of the best two may stand in for one that is like it
         const auto [a, b] = pairs[best_hypothesis(found, 2)];
-        const std::size_t before = pairs.size();
         for (std::size_t c = 0; c < singles_; ++c) {
             const std::string& name = fitted_[c].hypothesis.names.front();
             if (one_kin({name, fitted_[b].hypothesis.names.front()})) {
@@ -87,9 +96,16 @@ void HeaveLoop::fit_pairs() {
                 add(b, c);
             }
         }
-        const std::vector<std::pair<std::size_t, std::size_t>> more(pairs.begin() + static_cast<std::ptrdiff_t>(before),
-                                                                    pairs.end());
-        fit_both(more, found, noises);
+        fit_new();
+    }
+    // one effect alone may do what two do together, and neither of the two be found beside it: from each of the best
+    // two the search goes on without the other
+    for (bool more = !found.empty(); more;) {
+        const auto [a, b] = pairs[best_hypothesis(found, 2)];
+        add_beside(a);
+        add_beside(b);
+        more = pairs.size() > found.size();
+        fit_new();
     }
     for (std::size_t k = found.size(); k-- > 0;) {
         if (!plausible_pair(found[k])) {
