@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "core/error.h"
@@ -10,6 +11,7 @@
 #include "core/text.h"
 #include "core/toml.h"
 #include "core/units.h"
+#include "postproc/importers/importer.h"
 #include "surrogates/dynamics/logs/log.h"
 #include "surrogates/dynamics/logs/log_summary.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -33,6 +35,9 @@ std::vector<Heading> headings_of(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     stream.read(head.data(), static_cast<std::streamsize>(most));
     head.resize(static_cast<std::size_t>(stream.gcount()));
+    if (constexpr const char* byte_order_mark = "\xef\xbb\xbf"; head.starts_with(byte_order_mark)) {
+        head.erase(0, std::char_traits<char>::length(byte_order_mark));
+    }
     if (head.find('\0') != std::string::npos) {
         return {};
     }
@@ -75,6 +80,32 @@ bool is_table(const fs::path& path) {
     });
 }
 
+/// The channels as they were given, and of tables with them, or with a clock of their own, every other column that is
+/// called by a quantity in all files: what [log] does not list is not read.
+std::vector<MeasuredChannel> all_channels(const NewMeasurement& measurement, const std::vector<fs::path>& files) {
+    std::vector<MeasuredChannel> channels = measurement.channels;
+    std::map<std::string, std::size_t> named;  // in how many tables
+    std::size_t tables = 0;
+    for (const auto& file : files) {
+        if (is_log(file)) {
+            continue;
+        }
+        ++tables;
+        for (const Heading& one : headings_of(file)) {
+            named[one.name] += core::find_quantity(one.name) != nullptr && one.name != "time" ? 1 : 0;
+        }
+    }
+    for (const auto& [name, count] : named) {
+        const bool known = std::any_of(channels.begin(), channels.end(), [&n = name](const MeasuredChannel& one) {
+            return one.quantity == n || (one.message.empty() && one.field == n);
+        });
+        if (count == tables && !known && !(channels.empty() && measurement.clock.empty())) {
+            channels.push_back({name, "", name, ""});
+        }
+    }
+    return channels;
+}
+
 std::string dataset_text(const NewMeasurement& measurement, const std::vector<fs::path>& files, const fs::path& place) {
     bool time = false, logs = false;
     for (const auto& file : files) {
@@ -90,13 +121,14 @@ std::string dataset_text(const NewMeasurement& measurement, const std::vector<fs
         const auto relative = file.lexically_relative(place);
         text += "\n[[run]]\nfile = " + core::toml_string((relative.empty() ? file : relative).generic_string()) + "\n";
     }
-    if (!measurement.channels.empty() || !measurement.clock.empty()) {
+    const std::vector<MeasuredChannel> channels = all_channels(measurement, files);
+    if (!channels.empty() || !measurement.clock.empty()) {
         text += "\n[log]\n";
         text += measurement.clock.empty() ? "" : "clock = " + core::toml_string(measurement.clock) + "\n";
         text +=
             measurement.clock_unit.empty() ? "" : "clock_unit = " + core::toml_string(measurement.clock_unit) + "\n";
     }
-    for (const auto& channel : measurement.channels) {
+    for (const auto& channel : channels) {
         text += "channel." + channel.quantity + " = { ";
         text += channel.message.empty() ? "" : "message = " + core::toml_string(channel.message) + ", ";
         text += "field = " + core::toml_string(channel.field);
@@ -183,7 +215,13 @@ bool holds_measurements(const fs::path& path) {
     if (path.filename() == "dataset.toml" || fs::exists(path / "dataset.toml") || is_log(path) || is_table(path)) {
         return true;
     }
-    return fs::is_directory(path) && !measured_files({path}).empty();
+    if (!fs::is_directory(path) || measured_files({path}).empty()) {
+        return false;
+    }
+    // Tables beside CFD files (loads, monitors) are not what the folder is about.
+    return std::none_of(fs::directory_iterator(path), fs::directory_iterator(), [](const fs::directory_entry& entry) {
+        return !is_log(entry.path()) && !is_table(entry.path()) && postproc::importer_for(entry.path()) != nullptr;
+    });
 }
 
 std::vector<MeasuredField> measured_fields(const fs::path& file, core::Progress& progress) {
@@ -260,11 +298,14 @@ std::string text_of(const MeasuredChannel& channel) {
 AddedMeasurement with_new_measurement(const fs::path& folder, const NewMeasurement& measurement) {
     AddedMeasurement added;
     added.file = folder / "study.toml";
-    const fs::path place = fs::absolute(folder / "x").lexically_normal().parent_path();
+    const fs::path place = fs::weakly_canonical(fs::absolute(folder));  // ".." leads on from where links end
     const auto relative = [&](const fs::path& path) {
-        return fs::absolute(path).lexically_normal().lexically_relative(place).generic_string();
+        return fs::weakly_canonical(fs::absolute(path)).lexically_relative(place).generic_string();
     };
-    const auto files = measured_files(measurement.data);
+    auto files = measured_files(measurement.data);
+    for (auto& file : files) {
+        file = fs::weakly_canonical(file);
+    }
     if (files.empty()) {
         throw core::InputError("missing", "there are no measurements", {},
                                "a folder with dataset.toml, logs, or tables with time and gap");
@@ -308,8 +349,15 @@ void write_added(const AddedMeasurement& added) {
         fs::create_directories(added.dataset.parent_path());
         core::write_file(added.dataset, added.dataset_text);
     }
-    const core::ReplacingAllowed of_the_user;  // who asked for it
-    core::write_file(added.file, added.text);
+    try {
+        const core::ReplacingAllowed of_the_user;  // who asked for it
+        core::write_file(added.file, added.text);
+    } catch (...) {  // half of it would be in the way of the next attempt
+        std::error_code ignored;
+        fs::remove(added.dataset, ignored);
+        fs::remove(added.dataset.parent_path(), ignored);
+        throw;
+    }
 }
 
 }  // namespace underbody::cases

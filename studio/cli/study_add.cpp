@@ -70,7 +70,8 @@ int add_measurement(Shell& shell, const StudyArguments& arguments) {
     cases::NewMeasurement measurement;
     measurement.data.assign(arguments.data.begin(), arguments.data.end());
     measurement.model = arguments.model;
-    measurement.name = arguments.name.empty() ? measurement.data.front().stem().string() : arguments.name;
+    const std::filesystem::path first = std::filesystem::absolute(measurement.data.front() / "x").lexically_normal();
+    measurement.name = arguments.name.empty() ? first.parent_path().stem().string() : arguments.name;
     for (const auto& channel : arguments.channels) {
         measurement.channels.push_back(cases::measured_channel(channel));
     }
@@ -99,6 +100,9 @@ int add(Shell& shell, const StudyArguments& arguments) {
     }
     if (!arguments.data.empty()) {
         return add_measurement(shell, arguments);
+    }
+    if (!(arguments.model.empty() && arguments.name.empty() && arguments.channels.empty() && arguments.clock.empty())) {
+        throw core::UsageError("usage", "--model, --name, --channel and --clock are of a measurement (--data)");
     }
     const auto added = cases::with_new_cases(arguments.folder, new_cases(arguments));
     show_notes(shell, added.study);

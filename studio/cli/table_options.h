@@ -44,7 +44,7 @@ struct TableOptions {
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true,
                                                           tables::Held* asked = nullptr) const;
     /// Adds `held` (what the forces of a model are taken at beside their axes, and whence) and `warnings` to the JSON
-    /// of a command; nothing for a table.
+    /// of a command; of a table its `warnings` alone.
     void describe(nlohmann::json& document) const;
 
 private:

@@ -250,21 +250,22 @@ void Desk::save_session_file(const fs::path& file) {
     Q_EMIT noted("Saved the session as " + qt(file.string()));
 }
 
-void Desk::replay_log(const fs::path& file, const fs::path& start) {
-    jobs_.start("open", "replaying " + qt(file.string()), [this, file, start](core::Progress&) {
+void Desk::replay_log(const fs::path& file, const fs::path& start, bool recover) {
+    jobs_.start("open", "replaying " + qt(file.string()), [this, file, start, recover](core::Progress&) {
         auto history = std::make_shared<History>();
         SessionPointer session = open_session({});
         std::exception_ptr error;
+        std::vector<std::string> refused;
         try {
             const auto load = [&](const State& state) { return load_session(state, session); };
             if (!start.empty()) {
                 start_with(start, *history, session, load);
             }
-            replay(core::read_file(file), file.string(), *history, session, load);
+            replay(core::read_file(file), file.string(), *history, session, load, recover ? &refused : nullptr);
         } catch (...) {
             error = std::current_exception();  // what came before the wrong line is kept
         }
-        return [this, history, session, error] {
+        return [this, history, session, error, refused] {
             auto on_line = history_.on_line;
             history_ = *history;
             history_.on_line = std::move(on_line);
@@ -275,6 +276,9 @@ void Desk::replay_log(const fs::path& file, const fs::path& start) {
             }
             take_session(session);
             Q_EMIT changed();
+            for (const std::string& line : refused) {
+                Q_EMIT noted("Not done again: " + qt(line));
+            }
             if (error) {
                 std::rethrow_exception(error);
             }

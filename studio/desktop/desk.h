@@ -46,8 +46,8 @@ public:
     void run_study();
     [[nodiscard]] bool computing() const { return jobs_.busy("run"); }
     /// Carries out the lines of a log, from an empty state, or from what `start` is: a study, a session, a shape, a
-    /// CFD file.
-    void replay_log(const std::filesystem::path& file, const std::filesystem::path& start = {});
+    /// CFD file. `recover`: lines that are refused (what they name has gone since) are passed over and said.
+    void replay_log(const std::filesystem::path& file, const std::filesystem::path& start = {}, bool recover = false);
     void open_session_file(const std::filesystem::path& file);
     void save_session_file(const std::filesystem::path& file);
 

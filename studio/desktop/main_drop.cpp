@@ -9,6 +9,7 @@
 #include "studio/desktop/measurement_sheet.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/known_things.h"
 #include "studio/desktop/take_in_sheet.h"
 
 namespace underbody::studio {
@@ -35,7 +36,7 @@ void MainWindow::take_files(const std::vector<fs::path>& files) {
                 desk_->act({"shape", path.stem().string()});
                 desk_->act({"workspace", "design"});
             } else if (desk_->act({"add", "field", path.string()})) {
-                fields.push_back("field/" + fs::absolute(path).lexically_normal().string());
+                fields.push_back("field/" + action::whole_path(path));
             }
         });
     }

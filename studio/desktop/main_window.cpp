@@ -339,7 +339,7 @@ void MainWindow::offer_recovery() {
                              "The program did not wind up the last time. Its session can be done again from its log, "
                              "up to where it stopped.",
                              "Go on where it stopped")) {
-        desk_->replay_log(logs.front());
+        desk_->replay_log(logs.front(), {}, true);
         return;  // the log stays until the next start: its lines stand in the new one by then
     }
     for (const auto& log : logs) {

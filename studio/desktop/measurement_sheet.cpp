@@ -57,7 +57,7 @@ MeasurementSheet::MeasurementSheet(Desk& desk, const std::vector<fs::path>& drop
     setWindowTitle("Measurements into the study");
     setObjectName("measurement_sheet");
     build();
-    desk_.jobs().start("measurement", "looking at what was dropped",
+    desk_.jobs().start(slot("fields"), "looking at what was dropped",
                        [sheet = QPointer<MeasurementSheet>(this), dropped](core::Progress& progress) {
                            std::vector<cases::MeasuredField> fields;
                            QString wrong;
@@ -69,6 +69,7 @@ MeasurementSheet::MeasurementSheet(Desk& desk, const std::vector<fs::path>& drop
                            }
                            return [sheet, fields, wrong] {
                                if (sheet && wrong.isEmpty()) {
+                                   sheet->known_ = true;
                                    sheet->show_fields(fields);
                                    sheet->look();
                                } else if (sheet) {
@@ -231,8 +232,14 @@ void MeasurementSheet::show_fields(const std::vector<cases::MeasuredField>& fiel
 std::vector<std::string> MeasurementSheet::channels() const {
     std::vector<std::string> channels;
     for (const auto& one : asked) {
-        const std::string field = field_of(one.quantity)->currentText().trimmed().toStdString();
+        std::string field = field_of(one.quantity)->currentText().trimmed().toStdString();
         const std::string unit = unit_of(one.quantity)->currentText().trimmed().toStdString();
+        const bool own = std::any_of(fields_.begin(), fields_.end(), [&](const cases::MeasuredField& known) {
+            return known.message.empty() && known.field == one.quantity;
+        });
+        if (field.empty() && !unit.empty() && own) {
+            field = one.quantity;  // the unit that was chosen is of the column of that name
+        }
         if (!field.empty() && std::string(one.quantity) != "time") {
             channels.push_back(std::string(one.quantity) + "=" + field + (unit.empty() ? "" : ":" + unit));
         }
@@ -284,16 +291,19 @@ void MeasurementSheet::say(const QString& wrong, const QString& said) {
 
 void MeasurementSheet::look() {
     take_->setEnabled(false);
+    if (!known_) {
+        return;  // it is looked at when the fields are known
+    }
     cases::NewMeasurement all;
     try {
         all = wanted();
     } catch (const core::Error& error) {
-        desk_.jobs().cancel("measurement");
+        desk_.jobs().cancel(slot("look"));
         say(told(error), {});
         return;
     }
     desk_.jobs().start(
-        "measurement", "reading measurements",
+        slot("look"), "reading measurements",
         [sheet = QPointer<MeasurementSheet>(this), folder = desk_.session().folder, all](core::Progress&) {
             QString wrong, said;
             try {

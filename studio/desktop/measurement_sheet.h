@@ -61,12 +61,17 @@ private:
     [[nodiscard]] cases::NewMeasurement wanted() const;
     [[nodiscard]] std::vector<std::string> channels() const;
     [[nodiscard]] std::string clock() const;
+    /// Of the jobs of this sheet alone.
+    [[nodiscard]] QString slot(const char* what) const {
+        return QString("measurement %1 %2").arg(reinterpret_cast<quintptr>(this)).arg(what);
+    }
 
     Desk& desk_;
     std::vector<std::filesystem::path> dropped_;
     std::vector<cases::MeasuredField> fields_;
     QStringListModel names_;  ///< of the fields, for all rows
     std::map<std::string, Row> rows_;
+    bool known_ = false;  ///< the fields are
     QString wrong_ = "looking at the data";
     QLineEdit* name_ = nullptr;
     QComboBox* model_ = nullptr;

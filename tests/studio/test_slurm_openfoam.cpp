@@ -89,7 +89,7 @@ TEST_F(RealSlurm, OpenFoamOnTwoCoresGoesOnFromItsDecomposedCheckpoint) {
     const auto solved_past = [&](int iteration) {
         return wait_for([&] { return force_rows(unfinished).contains(iteration + 1); }, 200);
     };
-    const auto all_have_ended = [&] { return wait_for([&] { return at_work_in(unfinished).empty(); }, 20); };
+    const auto all_have_ended = [&] { return wait_for([&] { return at_work_in(unfinished).empty(); }, 60); };
     const auto has = [&](const fs::path& part, int time) {
         return fs::exists(unfinished / part / std::to_string(time) / "U");
     };
@@ -117,7 +117,9 @@ TEST_F(RealSlurm, OpenFoamOnTwoCoresGoesOnFromItsDecomposedCheckpoint) {
              fs::copy_options::recursive | fs::copy_options::copy_symlinks);
     // Slurm lets it wait for two minutes.
     std::this_thread::sleep_for(std::chrono::seconds(3));
-    ASSERT_EQ(slurm("scontrol", {"update", "JobId=" + job + "_1", "StartTime=now"}).exit_code, 0);
+    ASSERT_TRUE(wait_for([&] {
+        return slurm("scontrol", {"update", "JobId=" + job + "_1", "StartTime=now"}).exit_code == 0;
+    }));
     EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == 1; }, 200)) << json(states());
     const fs::path solved = runs() / case_name;
     EXPECT_TRUE(fs::exists(solved / std::to_string(iterations) / "U"));

@@ -106,19 +106,19 @@ void start_with(const fs::path& path, History& history, SessionPointer& session,
 }
 
 void replay(std::string_view text, const std::string& source, History& history, SessionPointer& session,
-            const SessionLoader& load) {
+            const SessionLoader& load, std::vector<std::string>* refused) {
     std::int64_t number = 0;
     while (!text.empty()) {
         const auto end = text.find('\n');
         const std::string_view line = text.substr(0, end);
         text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
         ++number;
+        const StatePointer before = history.state();
         try {
             const Words words = words_of(line);
             if (words.empty()) {
                 continue;
             }
-            const StatePointer before = history.state();
             if (words.front() == "undo" || words.front() == "redo") {
                 const bool moved = words.front() == "undo" ? history.undo() : history.redo();
                 if (!moved) {
@@ -132,6 +132,10 @@ void replay(std::string_view text, const std::string& source, History& history, 
                 session = load(*history.state());
             }
         } catch (const core::Error& error) {
+            if (refused != nullptr && history.state() == before) {
+                refused->push_back(std::string(line) + ": " + error.message());
+                continue;
+            }
             throw core::InputError(error.kind(), error.message(), {source, number, {}, {}}, error.hint());
         }
     }

@@ -33,10 +33,11 @@ std::vector<std::filesystem::path> left_over_logs(const std::filesystem::path& f
 
 /// Carries out every line of a log: actions, "undo", "redo"; empty lines and comments are passed over. `load` gives the
 /// session that a state needs (called when study or files changed). Throws core::Error with the line; what came before
-/// it is done then.
+/// it is done then. With `refused` the lines whose action is refused (what they name may have gone since) are passed
+/// over and said there.
 using SessionLoader = std::function<SessionPointer(const State&)>;
 void replay(std::string_view text, const std::string& source, History& history, SessionPointer& session,
-            const SessionLoader& load);
+            const SessionLoader& load, std::vector<std::string>* refused = nullptr);
 
 /// Opens what a program was started with, as its first step: a study, a SHAPE.toml, a CFD file; of a session (.ubs) the
 /// history begins with its state. Throws core::Error: nothing of that name (with the nearest), a study or a shape that

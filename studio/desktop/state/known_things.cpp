@@ -121,6 +121,11 @@ void need_column(const Session& session, const std::string& name) {
         for (const auto& quantity : core::quantity_names()) {
             known.push_back(quantity.name);
         }
+        for (const auto& entry : session.study.cases) {
+            for (const auto& [condition, value] : entry.conditions.numbers) {
+                known.push_back(condition);
+            }
+        }
     }
     for (const auto& column : geometry::variant_columns()) {
         known.push_back(column.name);
