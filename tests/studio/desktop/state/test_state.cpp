@@ -195,7 +195,7 @@ TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
         {"rows shape", "shapes"},
         {"exported lift.h lift fromat=c", "format"},
         {"accept 'heave tst'", "heave test"},
-        {"accept 'heave test'", "discovered"},
+        {"accept 'heave test'", "discover"},  // not yet, or in a report that is elsewhere
         {"unaccept x", "accepted"},
         {"select nonsense", "KIND/NAME"},
         {"select file/one", "field"},
@@ -438,6 +438,24 @@ TEST(StudioReplay, AWrongLineIsNamed) {
         EXPECT_EQ(error.place().text(), "a.log:2");
     }
     EXPECT_EQ(history.state()->workspace, "tables") << "what came before is done";
+}
+
+// What a line names may have gone since the program stopped; what cannot be opened ends the recovery all the same.
+TEST(StudioReplay, RecoveryPassesOverWhatIsRefusedAndSaysIt) {
+    History history(opened());
+    SessionPointer session = evie_session();
+    std::vector<std::string> refused;
+    const std::string log = "workspace tables\nselect case/gone\naxes gap lift_forc\nundo\nundo\nworkspace loop\n";
+    replay(
+        log, "a.log", history, session, [](const State&) { return evie_session(); }, &refused);
+    ASSERT_EQ(refused.size(), 3U);
+    EXPECT_EQ(refused[0].rfind("select case/gone: there is no case 'gone'", 0), 0U) << refused[0];
+    EXPECT_EQ(refused[2].rfind("undo: ", 0), 0U) << refused[2];
+    EXPECT_EQ(history.state()->workspace, "loop");
+    EXPECT_EQ(history.position(), 1U);
+    EXPECT_THROW(replay("open /no/such/study\nworkspace tables\n", "a.log", history, session,
+                        [](const State& state) { return load_session(state, {}); }),
+                 core::Error);
 }
 
 TEST(StudioSessionFile, ReadsBackFromAnywhere) {
