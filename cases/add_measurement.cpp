@@ -5,8 +5,10 @@
 #include <map>
 #include <set>
 
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/heading.h"
 #include "core/own_files.h"
 #include "core/text.h"
 #include "core/toml.h"
@@ -23,10 +25,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A heading of a CSV file: "rng_cm [cm]" -> name and unit.
-struct Heading {
-    std::string name, unit;
-};
+using Heading = core::HeadingText;
 
 /// Of the first line that is no comment; empty for what is no table.
 std::vector<Heading> headings_of(const fs::path& file) {
@@ -48,13 +47,7 @@ std::vector<Heading> headings_of(const fs::path& file) {
         }
         std::vector<Heading> headings;
         for (const auto cell : core::split(text, ',')) {
-            const std::string whole(core::trimmed(cell));
-            const auto open = whole.rfind('[');
-            const bool unit = open != std::string::npos && whole.ends_with(']');
-            headings.push_back(
-                {std::string(core::trimmed(std::string_view(whole).substr(0, unit ? open : whole.size()))),
-                 unit ? std::string(core::trimmed(std::string_view(whole).substr(open + 1, whole.size() - open - 2)))
-                      : std::string()});
+            headings.push_back(core::heading_text(cell).value_or(Heading{std::string(core::trimmed(cell)), {}}));
         }
         return headings.size() > 1 ? headings : std::vector<Heading>();
     }
@@ -107,10 +100,9 @@ std::vector<MeasuredChannel> all_channels(const NewMeasurement& measurement, con
 }
 
 std::string dataset_text(const NewMeasurement& measurement, const std::vector<fs::path>& files, const fs::path& place) {
-    bool time = false, logs = false;
+    bool time = false;
     for (const auto& file : files) {
         const bool log = is_log(file);
-        logs = logs || log;
         const auto headings = log ? std::vector<Heading>() : headings_of(file);
         time = time || log || !measurement.clock.empty() ||
                std::any_of(headings.begin(), headings.end(), [](const Heading& one) { return one.name == "time"; });
@@ -146,8 +138,7 @@ std::string said_of(const dynamics::Measurements& data) {
     for (const auto& column : data.runs.front().table.columns()) {
         columns += (columns.empty() ? "" : ", ") + column.name;
     }
-    return std::to_string(data.runs.size()) + (data.runs.size() == 1 ? " run, " : " runs, ") + std::to_string(rows) +
-           " rows: " + columns;
+    return core::counted(data.runs.size(), "run") + ", " + core::counted(rows, "row") + ": " + columns;
 }
 
 /// What a new data set says is tried in a folder of its own, with the paths of the files as they are.
@@ -234,7 +225,7 @@ std::vector<MeasuredField> measured_fields(const fs::path& file, core::Progress&
         }
     } else if (is_table(file)) {
         for (const auto& heading : headings_of(file)) {
-            fields.push_back({"", heading.name, heading.unit});
+            fields.push_back({"", heading.name, heading.unit.value_or("")});
         }
     }
     return fields;

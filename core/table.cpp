@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/file.h"
+#include "core/heading.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -137,25 +138,21 @@ struct Heading {
 };
 
 Heading read_heading(std::string_view cell, const Place& place) {
+    const auto text = heading_text(cell);
+    if (!text) {
+        throw InputError("parse", "'" + std::string(trimmed(cell)) + "' is not of the form 'name [unit]'", place);
+    }
     Heading heading;
-    const std::string_view text = trimmed(cell);
-    const std::size_t open = text.find('[');
-    if (open == std::string_view::npos) {
-        heading.name = std::string(text);
+    heading.name = text->name;
+    heading.unit = text->unit.value_or("");
+    if (!text->unit) {
         if (find_quantity(heading.name) != nullptr) {
             throw InputError("unit", "column '" + heading.name + "' has no unit", place,
                              "write '" + heading.name + " [" + find_quantity(heading.name)->unit + "]'");
         }
-    } else {
-        if (text.back() != ']') {
-            throw InputError("parse", "'" + std::string(text) + "' is not of the form 'name [unit]'", place);
-        }
-        heading.name = std::string(trimmed(text.substr(0, open)));
-        heading.unit = std::string(trimmed(text.substr(open + 1, text.size() - open - 2)));
-        if (heading.unit.empty()) {
-            throw InputError("unit", "column '" + heading.name + "' has an empty unit", place,
-                             "a pure number has [1]; a column of text has no brackets");
-        }
+    } else if (heading.unit.empty()) {
+        throw InputError("unit", "column '" + heading.name + "' has an empty unit", place,
+                         "a pure number has [1]; a column of text has no brackets");
     }
     if (heading.name.empty()) {
         throw InputError("parse", "a column has no name", place);

@@ -66,12 +66,6 @@ void add_error(nlohmann::json& json, const dynamics::TrimError& error) {
     }
 }
 
-/// Neither decays nor grows: a state that nothing brings back, such as heading or place, or a swing without damping.
-bool neutral(const dynamics::Mode& mode) {
-    const double size = std::abs(mode.value);
-    return size < 1e-7 || (!mode.stable && std::abs(mode.value.real()) < 1e-7 * size);
-}
-
 nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vector<dynamics::Mode>& modes,
                            const dynamics::TrimError& error = {}) {
     const dynamics::Controllability control = dynamics::controllability(system);
@@ -91,7 +85,7 @@ nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vect
                                  {"frequency_in_hertz", mode.frequency / (2 * std::numbers::pi)},
                                  {"damping_ratio", mode.damping_ratio},
                                  {"stable", mode.stable},
-                                 {"neutral", neutral(mode)}});
+                                 {"neutral", mode.neutral}});
         if (i < error.modes.size()) {
             const dynamics::ModeError& own = error.modes[i];
             json["modes"].back().update({{"real_sigma", number_or_null(own.real)},
@@ -107,7 +101,7 @@ std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& err
     constexpr double two_pi = 6.283185307179586;
     std::string text = "  " + mode.name + ": ";
     if (mode.value.imag() != 0) {
-        text += core::format_number(neutral(mode) ? 0 : mode.value.real(), 5) + " +- " +
+        text += core::format_number(mode.neutral ? 0 : mode.value.real(), 5) + " +- " +
                 core::format_number(mode.value.imag(), 5) + " i 1/s, " +
                 with_error(mode.frequency / two_pi, error.frequency / two_pi, 4) + " Hz, damping ratio " +
                 with_error(mode.damping_ratio, error.damping_ratio, 3);
@@ -115,7 +109,7 @@ std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& err
         text += with_error(mode.value.real(), error.real, 5) + " 1/s";
     }
     text += std::isnan(error.real) ? " (its kind changes within the errors of the forces)" : "";
-    return text + (neutral(mode) ? "  neutral" : mode.stable ? "" : "  unstable") + "\n";
+    return text + (mode.neutral ? "  neutral" : mode.stable ? "" : "  unstable") + "\n";
 }
 
 std::string modes_text(const std::vector<dynamics::Mode>& modes, const dynamics::TrimError& error) {

@@ -59,6 +59,9 @@ std::vector<double> participation_of(const EigenPair& e) {
     return share;
 }
 
+constexpr double at_rest = 1e-7;   ///< rad/s: below it a pole is 0
+constexpr double undamped = 1e-7;  ///< damping ratio: below it a swing has none
+
 }  // namespace
 
 std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::string>& groups) {
@@ -89,6 +92,7 @@ std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::strin
         mode.damping_ratio = mode.frequency > 0 ? -e.value.real() / mode.frequency : 0;
         mode.time_constant = e.value.real() != 0 ? -1 / e.value.real() : std::numeric_limits<double>::infinity();
         mode.stable = e.value.real() < 0;
+        mode.neutral = mode.frequency < at_rest || std::abs(e.value.real()) < undamped * mode.frequency;
         found.push_back(std::move(mode));
     }
     return found;

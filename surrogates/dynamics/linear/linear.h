@@ -35,6 +35,9 @@ struct Mode {
     double frequency = 0;        ///< rad/s, natural
     double time_constant = 0;    ///< s, of decay or (negative) of growth
     bool stable = false;
+    /// Neither decays nor grows, to rounding: a state that nothing brings back, such as heading or place, or a swing
+    /// without damping.
+    bool neutral = false;
     std::vector<double> participation;  ///< one per state, sums to 1
 };
 /// `groups`: for each state the word its motion is called by ("sway", "yaw", ...); states of one word count together.
