@@ -23,19 +23,6 @@ Interval wilson_interval(std::size_t successes, std::size_t trials) {
     return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
 }
 
-double quantile(std::vector<double> values, double p) {
-    if (values.empty()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    std::sort(values.begin(), values.end());
-    const double place = std::clamp(p, 0.0, 1.0) * static_cast<double>(values.size() - 1);
-    const std::size_t below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
-double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
-
 double robust_sigma(const std::vector<double>& values) {
     const double middle = median(values);
     std::vector<double> distances;

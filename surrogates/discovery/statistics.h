@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/quantile.h"
+
 namespace underbody::discovery {
 
 struct Interval {
@@ -16,9 +18,8 @@ struct Interval {
 /// 95 % interval of a probability of which `successes` of `trials` were seen (Wilson 1927).
 Interval wilson_interval(std::size_t successes, std::size_t trials);
 
-/// The p-quantile (0..1) by linear interpolation between order statistics; NaN for no values.
-double quantile(std::vector<double> values, double p);
-double median(std::vector<double> values);
+using core::median;
+using core::quantile;
 /// 1.4826 times the median distance from the median: the standard deviation of normal values, deaf to outliers.
 double robust_sigma(const std::vector<double>& values);
 double mean(std::span<const double> values);

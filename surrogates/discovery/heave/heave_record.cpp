@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
@@ -17,8 +18,6 @@ namespace underbody::discovery {
 using dynamics::Channel;
 
 namespace {
-
-constexpr double tables_margin = 6;  ///< standard deviations of a reading: no noise takes it so far beyond a table
 
 void remark(core::Problems& problems, const std::string& text, const std::string& file) {
     problems.push_back({core::Problem::Severity::warning, text, core::Place{file, {}, {}, {}}});
@@ -64,45 +63,6 @@ void read_input(const dynamics::MeasuredRun& run, const dynamics::RecordReading&
             record.raw_input.push_back(values.empty() || !std::isfinite(values[i]) ? 0 : values[i]);
         }
     }
-}
-
-/// Readings far from the middle of their neighbours become missing.
-std::size_t drop_outliers(std::vector<double>& values, double sigma) {
-    // readings on either side, and how far to look for them across missing ones; rows of other sensors between the
-    // readings do not count
-    constexpr std::size_t half = 3;
-    const auto finite = static_cast<std::size_t>(
-        std::count_if(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
-    const std::size_t reach = 15 * std::max<std::size_t>(1, values.size() / std::max<std::size_t>(1, finite));
-    std::vector<std::size_t> bad;
-    std::vector<double> window;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        window.clear();
-        if (!std::isfinite(values[i])) {
-            continue;
-        }
-        window.push_back(values[i]);
-        for (const bool before : {true, false}) {
-            std::size_t found = 0;
-            for (std::size_t d = 1; d <= reach && found < half && (before ? d <= i : i + d < values.size()); ++d) {
-                const double other = values[before ? i - d : i + d];
-                if (std::isfinite(other)) {
-                    window.push_back(other);
-                    ++found;
-                }
-            }
-        }
-        if (window.size() >= 4) {
-            const double spread = quantile(window, 0.8) - quantile(window, 0.2);
-            if (std::abs(values[i] - median(window)) > 8 * sigma + 2 * spread) {
-                bad.push_back(i);
-            }
-        }
-    }
-    for (const std::size_t i : bad) {
-        values[i] = std::nan("");
-    }
-    return bad.size();
 }
 
 bool stuck(const std::vector<double>& values) {
@@ -214,48 +174,6 @@ double step_for(const dynamics::Measurements& data) {
     return lasted.empty() ? record_step : std::min(record_step, median(lasted) / 100);
 }
 
-/// Readings at the ends of a sensor's range: many at exactly one value, several in one piece, and hardly any beyond
-/// (outliers may be).
-std::size_t drop_saturated(const std::vector<double>& time, std::vector<double>& values) {
-    std::size_t dropped = 0;
-    const double step = dynamics::reading_step(values);
-    for (const bool upper : {true, false}) {
-        double end = upper ? -1e300 : 1e300;
-        std::size_t same = 1;
-        for (std::size_t i = 1; i < values.size(); ++i) {
-            same = values[i] == values[i - 1] ? same + 1 : 1;
-            if (same == 5) {
-                end = upper ? std::max(end, values[i]) : std::min(end, values[i]);
-            }
-        }
-        // a sensor without noise of its own repeats values by rounding; a saturated one repeats its end alone
-        std::vector<double> inside = values;
-        std::replace(inside.begin(), inside.end(), end, std::nan(""));
-        const double noise = dynamics::sensor_noise(time, inside);
-        const auto at_end = static_cast<std::size_t>(std::count(values.begin(), values.end(), end));
-        // one that rounds repeats every value: its end counts only when it has far more readings than the value beside
-        // it
-        const double beside = end + (upper ? -step : step);
-        const auto at_next = static_cast<std::size_t>(
-            step > 0 ? std::count_if(values.begin(), values.end(),
-                                     [&](double v) { return std::abs(v - beside) < 0.1 * step; })
-                     : 0);
-        const auto beyond =
-            std::count_if(values.begin(), values.end(), [&](double x) { return upper ? x > end : x < end; });
-        if (at_end > std::max<std::size_t>(8, values.size() / 100) &&
-            50 * static_cast<std::size_t>(beyond) < values.size() && noise > 0 && at_end > 10 * at_next) {
-            // beside the end only the readings whose noise points inward are left: they would look like a force
-            for (double& value : values) {
-                if (upper ? value > end - 5 * noise : value < end + 5 * noise) {
-                    value = std::nan("");
-                    ++dropped;
-                }
-            }
-        }
-    }
-    return dropped;
-}
-
 /// Means of coloured noise scatter as much as single readings do, and are smoother than any noise of first order: they
 /// would pass for motion.
 bool means_keep_scatter(const HeaveRecord& record, double noise) {
@@ -288,9 +206,8 @@ void keep_first_of_steps(const std::vector<double>& time, const std::vector<doub
     record.gap_share.assign(record.time.size(), 1);
 }
 
-std::string tables_of(const dynamics::HeavePlant& plant) {
-    return "(" + core::format_number(plant.terms.table_lower, 4) + " to " +
-           core::format_number(plant.terms.table_upper, 4) + " m)";
+dynamics::GapRange tables_of(const dynamics::HeavePlant& plant) {
+    return {plant.terms.table_lower, plant.terms.table_upper};
 }
 
 /// Why the declared model cannot run this run; empty where it can.
@@ -306,7 +223,7 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
     const auto inside = [&](double value) {
         return value > lower - 0.05 * (upper - lower) && value < upper + 0.05 * (upper - lower);
     };
-    const std::string where = tables_of(plant);
+    const std::string where = dynamics::range_text(tables_of(plant));
     unit = false;
     if (!inside(middle)) {
         unit = inside(middle * 1e-3) || inside(middle * 1e3);
@@ -329,36 +246,21 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
     return "";
 }
 
-/// Leaves the longest stretch in which no reading lies outside the tables by more than `margin`: beyond them the model
-/// says nothing, and a body that came back from there would be given an effect for what the tables lack. The share of
-/// the steps that were outside, or 0.
-double keep_inside_tables(HeaveRecord& record, double margin) {
-    const double lower = record.plant->terms.table_lower - margin;
-    const double upper = record.plant->terms.table_upper + margin;
-    const std::size_t count = record.time.size();
-    std::size_t first = 0, last = 0, begin = 0, outside = 0;  // longest stretch [first, last), and where this one began
-    for (std::size_t k = 0; k <= count; ++k) {
-        const bool out = k < count && (record.gap[k] < lower || record.gap[k] > upper);
-        outside += out ? 1 : 0;
-        if (out || k == count) {
-            if (k - begin > last - first) {
-                first = begin;
-                last = k;
-            }
-            begin = k + 1;
-        }
-    }
-    if (outside == 0) {
-        return 0;
+/// Leaves the longest stretch inside the tables: a body that came back from beyond them would be given an effect for
+/// what the tables lack. What it is told of that; empty where all of it lies inside.
+std::string keep_inside_tables(HeaveRecord& record, double noise) {
+    const dynamics::InsideTables inside = dynamics::longest_inside(record.gap, tables_of(*record.plant), noise);
+    if (inside.outside == 0) {
+        return "";
     }
     for (std::vector<double>* values :
          {&record.time, &record.gap, &record.gap_share, &record.velocity, &record.velocity_share, &record.lift_scale}) {
         if (!values->empty()) {  // not measured, or no condition changes
-            *values = {values->begin() + static_cast<std::ptrdiff_t>(first),
-                       values->begin() + static_cast<std::ptrdiff_t>(last)};
+            *values = {values->begin() + static_cast<std::ptrdiff_t>(inside.first),
+                       values->begin() + static_cast<std::ptrdiff_t>(inside.last)};
         }
     }
-    return static_cast<double>(outside) / static_cast<double>(count);
+    return dynamics::outside_text(record.name, inside, tables_of(*record.plant), record.time);
 }
 
 /// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.
@@ -561,13 +463,10 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         record.plant = plant;
         const std::vector<double>& time = run.table.numbers("time");
         std::vector<double> gap = run.table.numbers("gap");
-        const std::size_t saturated = drop_saturated(time, gap);
+        const std::size_t saturated = dynamics::drop_saturated(time, gap);
         const double noise = dynamics::sensor_noise(time, gap);  // a reading at the end of the range has none
         if (saturated > 0) {
-            remark(result.problems,
-                   std::to_string(saturated) + " gap readings of " + run.name +
-                       " stand exactly at the end of the sensor's range (saturated): not used",
-                   file);
+            remark(result.problems, dynamics::saturated_text(run.name, saturated), file);
         }
         if (stuck(gap) || 2 * saturated > gap.size()) {
             remark(
@@ -594,12 +493,9 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
             ++swapped;
             continue;
         }
-        const std::size_t outliers = drop_outliers(gap, std::max(noise, 1e-9));
+        const std::size_t outliers = dynamics::drop_outliers(gap, std::max(noise, 1e-9));
         if (outliers > 0) {
-            remark(
-                result.problems,
-                std::to_string(outliers) + " gap readings of " + run.name + " lie far from their neighbours: not used",
-                file);
+            remark(result.problems, dynamics::outliers_text(run.name, outliers), file);
         }
         if (!std::isfinite(noise)) {
             remark(result.problems, run.name + " is left out: it has hardly any gap readings", file);
@@ -639,7 +535,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                            " stands still for a fifth of the run or is missing: it is not used",
                        file);
             } else {
-                drop_outliers(values, std::max(own, 1e-9));
+                dynamics::drop_outliers(values, std::max(own, 1e-9));
                 velocity_noises.push_back(own);
                 average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
                 if (coloured) {
@@ -649,16 +545,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                 result.velocity_measured = true;
             }
         }
-        if (const double outside = keep_inside_tables(record, tables_margin * noise); outside > 0) {
-            const std::string used = record.time.empty() ? "nothing of it is"
-                                                         : "only " + core::format_number(record.time.front(), 4) +
-                                                               " to " + core::format_number(record.time.back(), 4) +
-                                                               " s, the longest stretch inside, are";
-            remark(result.problems,
-                   run.name + " spends " + core::format_number(100 * outside, 3) +
-                       " % of its time outside the tables of the declared model " + tables_of(*plant) +
-                       ", where nothing is known of the force: " + used + " used",
-                   file);
+        if (const std::string outside = keep_inside_tables(record, noise); !outside.empty()) {
+            remark(result.problems, outside, file);
         }
         read_input(run, model.records, record);
         result.input_recorded = result.input_recorded || run.has("input_force");

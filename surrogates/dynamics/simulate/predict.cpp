@@ -7,11 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <span>
 
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/pitch_predict.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
@@ -142,23 +144,38 @@ public:
           velocity_(as_read(run, "heave_velocity", records)),
           options_(options),
           gap_noise_(gap_noise),
-          velocity_noise_(velocity_noise) {}
+          velocity_noise_(velocity_noise) {
+        const std::vector<double>& time = signals_.time;
+        saturated_ = drop_saturated(time, gap_);
+        const double own = sensor_noise(time, gap_);
+        outliers_ = drop_outliers(gap_, std::max(own, 1e-9));
+        inside_ = longest_inside(gap_, lift_gap_range(model), own);
+        if (!velocity_.empty()) {
+            drop_outliers(velocity_, std::max(sensor_noise(time, velocity_), 1e-9));
+        }
+    }
 
     struct Row {
         std::size_t window, sample;
         double gap, velocity;
     };
 
-    std::vector<Row> rows() const {
-        const std::vector<double>& t = signals_.time;
+    /// Of the stretch inside the tables, or of the `whole` run.
+    std::vector<Row> rows(bool whole) const {
+        const std::vector<double>& time = signals_.time;
+        const std::size_t first = whole ? 0 : inside_.first, last = whole ? time.size() : inside_.last;
+        if (last < first + 2) {
+            return {};
+        }
+        const std::span<const double> t(time.data(), last);
         const double past = options_.past > 0 ? options_.past : std::min(options_.horizon, 2.0);
         std::vector<Row> out;
         std::size_t window = 0;
         // Beyond this nothing is known of what acted.
-        const double known = t.back() - signals_.input_advance;
-        for (double begin = t.front() + past; begin < known; begin += options_.horizon) {
-            const auto at = [&t](double time) {
-                return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
+        const double known = std::min(t.back(), time.back() - signals_.input_advance);
+        for (double begin = t[first] + past; begin < known; begin += options_.horizon) {
+            const auto at = [&t](double when) {
+                return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), when - 1e-9) - t.begin());
             };
             const std::size_t from = at(begin - past), start = at(begin);
             const double until = std::min(begin + options_.horizon, known);
@@ -182,6 +199,10 @@ public:
     }
 
     [[nodiscard]] const std::vector<double>& time() const { return signals_.time; }
+    [[nodiscard]] const InsideTables& inside() const { return inside_; }
+    [[nodiscard]] std::size_t saturated() const { return saturated_; }
+    [[nodiscard]] std::size_t outliers() const { return outliers_; }
+    /// What is judged by: NaN where a reading is missing or not used.
     [[nodiscard]] const std::vector<double>& gap() const { return gap_; }
     [[nodiscard]] const std::vector<double>& velocity() const { return velocity_; }
 
@@ -250,6 +271,8 @@ private:
     std::vector<double> gap_, velocity_;
     PredictOptions options_;
     double gap_noise_, velocity_noise_;
+    InsideTables inside_;
+    std::size_t saturated_ = 0, outliers_ = 0;
 };
 
 using RunRows = std::vector<std::vector<RunPredictor::Row>>;
@@ -258,6 +281,7 @@ using RunRows = std::vector<std::vector<RunPredictor::Row>>;
 struct SeriesPrediction {
     std::vector<std::unique_ptr<RunPredictor>> predictors;
     RunRows rows;
+    bool outside_too = false;  ///< no run has a window inside the tables: whole runs are predicted
     /// The gap's errors in units of its noise, one window after the other; 0 where nothing was measured.
     [[nodiscard]] std::vector<double> errors(const std::vector<double>& noise) const {
         std::vector<double> errors;
@@ -302,8 +326,17 @@ SeriesPrediction predict_runs(const Model& model, const RecordReading& records, 
                                                                 channel_noise(data, run, "gap", 1e-4),
                                                                 channel_noise(data, run, "heave_velocity", 1e-3)));
     }
-    core::parallel_for(
-        data.runs.size(), [&](std::size_t r) { all.rows[r] = all.predictors[r]->rows(); }, progress);
+    const auto predict_all = [&](bool whole) {
+        core::parallel_for(
+            data.runs.size(), [&](std::size_t r) { all.rows[r] = all.predictors[r]->rows(whole); }, progress);
+    };
+    predict_all(false);
+    const bool none = std::all_of(all.rows.begin(), all.rows.end(), [](const auto& rows) { return rows.empty(); });
+    all.outside_too = none && std::any_of(all.predictors.begin(), all.predictors.end(),
+                                          [](const auto& predictor) { return predictor->inside().outside > 0; });
+    if (all.outside_too) {
+        predict_all(true);
+    }
     return all;
 }
 
@@ -395,6 +428,38 @@ double longest_run(const Measurements& data) {
     return longest;
 }
 
+/// What of the runs is not judged by, and why.
+void remark_unused(const SeriesPrediction& all, const Model& model, const Measurements& data, Prediction& out) {
+    const GapRange tables = lift_gap_range(model);
+    for (std::size_t r = 0; r < data.runs.size(); ++r) {
+        const RunPredictor& predictor = *all.predictors[r];
+        const InsideTables& inside = predictor.inside();
+        const std::string& run = data.runs[r].name;
+        const auto say = [&](const std::string& text) {
+            out.remarks.push_back({core::Problem::Severity::warning, text, {data.runs[r].table.source, {}, {}, {}}});
+        };
+        if (predictor.saturated() > 0) {
+            say(saturated_text(run, predictor.saturated()));
+        }
+        if (predictor.outliers() > 0) {
+            say(outliers_text(run, predictor.outliers()));
+        }
+        if (inside.outside > 0 && !all.outside_too) {
+            const std::span<const double> time(predictor.time());
+            say(outside_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
+        } else if (all.rows[r].empty()) {
+            say("run " + run + " is shorter than the time a prediction needs and was left out");
+        }
+    }
+    if (all.outside_too) {
+        out.remarks.push_back({core::Problem::Severity::warning,
+                               "no run stays inside the tables of the model " + range_text(tables) +
+                                   " for as long as a prediction needs: the error holds what the tables' end values "
+                                   "give outside, where nothing is known of the force",
+                               {}});
+    }
+}
+
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
     if (moves_in_pitch(model, data)) {
@@ -408,6 +473,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
     out.input_between_from = reading.from;
     out.records = reading.records;
     check_bounds(all, model, data, out);
+    remark_unused(all, model, data, out);
     std::vector<std::string> names;
     std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
     ChannelScore gap_score, velocity_score;
@@ -429,12 +495,6 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
             velocity.push_back(predictor.velocity().empty() ? std::nan("") : predictor.velocity()[row.sample]);
             velocity_predicted.push_back(row.velocity);
             velocity_score.take(row.velocity - velocity.back());
-        }
-        if (all.rows[r].empty()) {
-            out.remarks.push_back(
-                {core::Problem::Severity::warning,
-                 "run " + data.runs[r].name + " is shorter than the time a prediction needs and was left out",
-                 {}});
         }
     }
     const double shorter = 0.25 * longest_run(data);

@@ -408,6 +408,24 @@ TEST(HeaveInput, WhatHappensOutsideTheTablesIsNoEffect) {
     EXPECT_NEAR(found.effects[0].parameters[0].value, 3, 0.05);
     EXPECT_NEAR(found.effects[0].parameters[1].value, 0.02, 1e-3);
     EXPECT_LT(found.error.front().after.rmse, 1.3 * 2e-4);
+
+    // The model as found on the same logs: the same stretches, the same words, an error at the noise as well.
+    const dynamics::Prediction predicted = dynamics::predict(found.model, data);
+    EXPECT_NEAR(predicted.channels[0].in_noise, found.error.front().after.rmse / 2e-4, 0.15);
+    for (const core::Problem& problem : found.problems) {
+        if (problem.message.find("outside the tables") != std::string::npos) {
+            const std::string words = problem.message.substr(0, problem.message.find(" % of"));
+            EXPECT_TRUE(says(predicted.remarks, words.substr(0, words.find(' ')) + " spends ")) << problem.message;
+        }
+    }
+
+    // A run that never stays inside for as long as a prediction takes is still shown, and that its error says little.
+    for (auto& run : data.runs) {
+        run.table = with_column(run.table, "gap", [](std::size_t, double h) { return h + 2; });
+    }
+    const dynamics::Prediction outside = dynamics::predict(found.model, data);
+    EXPECT_GT(outside.windows, 0U);
+    EXPECT_TRUE(says(outside.remarks, "no run stays inside the tables of the model (0.001 to 1.6 m)"));
 }
 
 TEST(HeaveInput, AClockThatRunsBehindIsAligned) {
@@ -493,14 +511,22 @@ TEST(HeaveInput, NoiseFiguresWrongByTwoAreFoundOut) {
 }
 
 TEST(HeaveInput, SaturatedReadingsGapsAndOutliersDoNotMakeAnEffect) {
-    const Discovery found = found_on_changed([](dynamics::Measurements& data) {
+    dynamics::Measurements logged;
+    const Discovery found = found_on_changed([&logged](dynamics::Measurements& data) {
         for (auto& run : data.runs) {
             run.table = with_column(run.table, "gap", [](std::size_t i, double h) {
                 return i > 400 && i < 500 ? std::nan("") : i % 97 == 0 ? h + 0.03 : std::min(h, 0.2);
             });
         }
+        logged = data;
     });
     EXPECT_EQ(found.verdict, "none") << found.sentence;
+    // Nor do they count in the error of a prediction (15 noises with them), which says that it leaves them out; where
+    // little is left of the 2 s before a window, its start is known less well.
+    const dynamics::Prediction predicted = dynamics::predict(found.model, logged);
+    EXPECT_LT(predicted.channels[0].in_noise, 1.5);
+    EXPECT_TRUE(says(predicted.remarks, "lie far from their neighbours: not used"));
+    EXPECT_TRUE(says(predicted.remarks, "(saturated): not used"));
 }
 
 TEST(HeaveInput, BodiesThatHardlyMoveAreSaidToTellLittle) {
