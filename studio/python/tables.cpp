@@ -2,7 +2,10 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstring>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.h"
@@ -21,7 +24,7 @@ namespace underbody::python {
 namespace {
 
 using tables::ForceTable;
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Numbers = py::array_t<double, py::array::forcecast>;
 
 /// An array that owns the numbers.
 py::array_t<double> taken(std::vector<double>&& numbers, std::vector<py::ssize_t> shape = {}) {
@@ -33,38 +36,102 @@ py::array_t<double> taken(std::vector<double>&& numbers, std::vector<py::ssize_t
     return py::array_t<double>(shape, kept->data(), owner);
 }
 
-/// [n, axes]
-std::size_t rows_of(const ForceTable& table, const Points& points) {
-    if (points.ndim() != 2 || static_cast<std::size_t>(points.shape(1)) != table.axes().size()) {
-        throw core::UsageError("shape", "points have to be (n, " + std::to_string(table.axes().size()) +
-                                            "): one column for each axis of the table");
+/// Points as columns, one for each axis of a table, taken where they lie; a column of one number stands for every
+/// point.
+class Points {
+public:
+    Points(const ForceTable& table, const py::sequence& columns) {
+        if (columns.size() != table.axes().size()) {
+            throw core::UsageError("shape", "points have to be (n, " + std::to_string(table.axes().size()) +
+                                                "): one column for each axis of the table");
+        }
+        for (const auto& one : columns) {
+            columns_.push_back(one.cast<Numbers>());
+            const Numbers& column = columns_.back();
+            const auto count = static_cast<std::size_t>(column.size());
+            first_.push_back(reinterpret_cast<const char*>(column.data()));
+            step_.push_back(count == 1 ? 0 : column.strides(0));
+            rows_ = count != 1 ? count : rows_;
+        }
     }
-    return static_cast<std::size_t>(points.shape(0));
+    [[nodiscard]] std::size_t rows() const { return rows_; }
+    [[nodiscard]] double operator()(std::size_t row, std::size_t axis) const {
+        double x = 0;
+        std::memcpy(&x, first_[axis] + static_cast<py::ssize_t>(row) * step_[axis], sizeof x);
+        return x;
+    }
+    /// Rows [begin, end) side by side: [(end - begin) * axes].
+    void gather(std::size_t begin, std::size_t end, double* to) const {
+        const std::size_t axes = first_.size();
+        for (std::size_t k = 0; k < axes; ++k) {
+            const char* from = first_[k] + static_cast<py::ssize_t>(begin) * step_[k];
+            const py::ssize_t step = step_[k];
+            for (std::size_t i = 0; i < end - begin; ++i, from += step) {
+                std::memcpy(to + i * axes + k, from, sizeof(double));
+            }
+        }
+    }
+    /// Do all of them lie within the axes? The usual case, in one quick pass.
+    [[nodiscard]] bool inside(const ForceTable& table) const {
+        std::atomic<bool> inside = true;
+        core::parallel_blocks(rows_, block, [&](std::size_t begin, std::size_t end) {
+            bool outside = false;
+            for (std::size_t k = 0; k < first_.size(); ++k) {
+                const double lower = table.axes()[k].lower, upper = table.axes()[k].upper;
+                const char* from = first_[k] + static_cast<py::ssize_t>(begin) * step_[k];
+                const py::ssize_t step = step_[k];
+                for (std::size_t i = begin; i < end; ++i, from += step) {
+                    double x = 0;
+                    std::memcpy(&x, from, sizeof x);
+                    outside |= static_cast<bool>(static_cast<int>(x < lower) | static_cast<int>(x > upper));
+                }
+            }
+            if (outside) {
+                inside = false;
+            }
+        });
+        return inside;
+    }
+
+    /// Points of a block, small enough for the processor's cache.
+    static constexpr std::size_t block = 8192;
+
+private:
+    std::vector<Numbers> columns_;
+    std::vector<const char*> first_;
+    std::vector<py::ssize_t> step_;  // bytes
+    std::size_t rows_ = 1;
+};
+
+/// Work on blocks of points in Python's threads' own time: work(begin, end, points of the block).
+template <typename Work>
+void for_blocks(const Points& points, std::size_t axes, std::size_t block, const Work& work) {
+    Call(py::none()).run(core::Progress::none(), [&] {
+        core::parallel_blocks(points.rows(), block, [&](std::size_t begin, std::size_t end) {
+            const auto gathered = std::make_unique_for_overwrite<double[]>((end - begin) * axes);
+            points.gather(begin, end, gathered.get());
+            work(begin, end, gathered.get());
+        });
+    });
 }
 
-/// Points in Python's threads' own time: blocks on all cores.
-constexpr std::size_t block = 16384;
-
-py::tuple values(const ForceTable& table, const Points& points, bool with_slopes) {
-    const std::size_t rows = rows_of(table, points);
-    const std::size_t axes = table.axes().size();
+py::tuple values(const ForceTable& table, const py::sequence& columns, bool with_slopes) {
+    const Points points(table, columns);
+    const std::size_t rows = points.rows(), axes = table.axes().size();
     std::vector<double> value(rows), slope(with_slopes ? rows * axes : 0);
     bool by_policy = false;
     for (const auto& axis : table.axes()) {
         by_policy = by_policy || axis.range != tables::RangePolicy::clamp;
     }
-    const double* at = points.data();
-    Call(py::none()).run(core::Progress::none(), [&] {
-        core::parallel_blocks(rows, block, [&](std::size_t begin, std::size_t end) {
-            double* to = with_slopes ? slope.data() + begin * axes : nullptr;
-            if (!by_policy) {
-                tables::values(table, at + begin * axes, end - begin, value.data() + begin, to);
-                return;
-            }
-            for (std::size_t i = begin; i < end; ++i) {
-                value[i] = table.value_by_policy(at + i * axes, with_slopes ? slope.data() + i * axes : nullptr);
-            }
-        });
+    for_blocks(points, axes, Points::block, [&](std::size_t begin, std::size_t end, const double* at) {
+        double* to = with_slopes ? slope.data() + begin * axes : nullptr;
+        if (!by_policy) {
+            tables::values(table, at, end - begin, value.data() + begin, to);
+            return;
+        }
+        for (std::size_t i = begin; i < end; ++i, at += axes, to += with_slopes ? axes : 0) {
+            value[i] = table.value_by_policy(at, to);
+        }
     });
     return py::make_tuple(
         taken(std::move(value)),
@@ -74,23 +141,20 @@ py::tuple values(const ForceTable& table, const Points& points, bool with_slopes
 }
 
 /// value, sigma, slope [n, axes], outside, no_data
-py::tuple at(const ForceTable& table, const Points& points) {
-    const std::size_t rows = rows_of(table, points);
-    const std::size_t axes = table.axes().size();
+py::tuple at(const ForceTable& table, const py::sequence& columns) {
+    const Points points(table, columns);
+    const std::size_t rows = points.rows(), axes = table.axes().size();
     std::vector<double> value(rows), sigma(rows), slope(rows * axes);
     std::vector<unsigned char> outside(rows), no_data(rows);
-    const double* first = points.data();
-    Call(py::none()).run(core::Progress::none(), [&] {
-        core::parallel_blocks(rows, 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto e = table.at({first + i * axes, axes});
-                value[i] = e.value;
-                sigma[i] = e.sigma;
-                std::copy_n(e.slope.begin(), axes, slope.begin() + static_cast<std::ptrdiff_t>(i * axes));
-                outside[i] = e.outside ? 1 : 0;
-                no_data[i] = e.no_data ? 1 : 0;
-            }
-        });
+    for_blocks(points, axes, 1024, [&](std::size_t begin, std::size_t end, const double* point) {
+        for (std::size_t i = begin; i < end; ++i, point += axes) {
+            const auto e = table.at({point, axes});
+            value[i] = e.value;
+            sigma[i] = e.sigma;
+            std::copy_n(e.slope.begin(), axes, slope.begin() + static_cast<std::ptrdiff_t>(i * axes));
+            outside[i] = e.outside ? 1 : 0;
+            no_data[i] = e.no_data ? 1 : 0;
+        }
     });
     const auto flags = [](const std::vector<unsigned char>& all) {
         py::array_t<bool> result(static_cast<py::ssize_t>(all.size()));
@@ -102,38 +166,20 @@ py::tuple at(const ForceTable& table, const Points& points) {
                           flags(outside), flags(no_data));
 }
 
-/// Do all points lie within the axes? The usual case, in one quick pass.
-bool all_inside(const ForceTable& table, const double* first, std::size_t rows) {
-    const std::size_t axes = table.axes().size();
-    for (std::size_t k = 0; k < axes; ++k) {
-        double lowest = table.axes()[k].lower, highest = table.axes()[k].upper;
-        const double* x = first + k;
-        for (std::size_t i = 0; i < rows; ++i, x += axes) {
-            lowest = *x < lowest ? *x : lowest;
-            highest = *x > highest ? *x : highest;
-        }
-        if (lowest < table.axes()[k].lower || highest > table.axes()[k].upper) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /// The remark of the point that lies furthest outside, and how many do; nothing when all lie inside.
-py::object outside_remark(const ForceTable& table, const Points& points) {
-    const std::size_t rows = rows_of(table, points);
-    const std::size_t axes = table.axes().size();
-    const double* first = points.data();
-    if (all_inside(table, first, rows)) {
+py::object outside_remark(const ForceTable& table, const py::sequence& columns) {
+    const Points points(table, columns);
+    if (points.inside(table)) {
         return py::none();
     }
+    const std::size_t rows = points.rows(), axes = table.axes().size();
     std::size_t count = 0, worst = 0;
     double furthest = 0;
     for (std::size_t i = 0; i < rows; ++i) {
         double beyond = 0;
         for (std::size_t k = 0; k < axes; ++k) {
             const auto& axis = table.axes()[k];
-            const double x = first[i * axes + k];
+            const double x = points(i, k);
             beyond = std::max(beyond, std::max(axis.lower - x, x - axis.upper) / (axis.upper - axis.lower));
         }
         count += beyond > 0 ? 1 : 0;
@@ -144,7 +190,7 @@ py::object outside_remark(const ForceTable& table, const Points& points) {
     }
     tables::Held held;
     for (std::size_t k = 0; k < axes; ++k) {
-        held.emplace_back(table.axes()[k].name, first[worst * axes + k]);
+        held.emplace_back(table.axes()[k].name, points(worst, k));
     }
     std::string text;
     for (const auto& remark : tables::outside_remarks(table, held)) {

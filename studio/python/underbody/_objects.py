@@ -143,43 +143,41 @@ class Table:
         if points is not None:
             if held:
                 raise _errors.wrong_use("give points or axes by name, not both")
-            points = numpy.ascontiguousarray(points, dtype=float)
+            points = numpy.asarray(points, dtype=float)
             if points.ndim == 1 and len(axes) == 1:
-                return points.reshape(-1, 1), points.shape
-            return points.reshape(-1, points.shape[-1] if points.ndim else 1), points.shape[:-1]
+                return [points], points.shape
+            return list(points.reshape(-1, points.shape[-1] if points.ndim else 1).T), points.shape[:-1]
         units = {name: unit for name, unit, _, _ in axes}
         columns = {name: _numbers(value, units.get(name, "1")) for name, value in held.items()}
         firsts = [(name, float(one.flat[0]) if one.size else 0.0) for name, one in columns.items()]
         point, remarks = self._native.held_point(firsts)
         say([(0, text) for text in remarks], 5)
         shape = numpy.broadcast_shapes(*(one.shape for one in columns.values()))
-        if len(axes) == 1 and axes[0][0] in columns:
-            return numpy.ascontiguousarray(columns[axes[0][0]]).reshape(-1, 1), shape
-        rows = numpy.empty((*shape, len(axes)))
-        for k, (name, _, _, _) in enumerate(axes):
-            rows[..., k] = columns.get(name, point[k])
-        return rows.reshape(-1, len(axes)), shape
+        numbers = [columns.get(name, numpy.array(point[k])) for k, (name, _, _, _) in enumerate(axes)]
+        # One number stands for all points by itself.
+        return [(one if one.size == 1 else numpy.broadcast_to(one, shape)).reshape(-1) for one in numbers], shape
 
     def _look(self, points, held):
-        rows, shape = self._points(points, held)
-        if (remark := self._native.outside_remark(rows)) is not None:
+        """A column of numbers for each axis, and the shape of the points."""
+        columns, shape = self._points(points, held)
+        if (remark := self._native.outside_remark(columns)) is not None:
             say([(0, remark)], 4)
-        return rows, shape
+        return columns, shape
 
     def __call__(self, points=None, **held):
-        rows, shape = self._look(points, held)
-        return _shaped(self._native.values(rows, False)[0], shape)
+        columns, shape = self._look(points, held)
+        return _shaped(self._native.values(columns, False)[0], shape)
 
     def slopes(self, points=None, **held):
         """{axis: d value / d axis}, SI."""
-        rows, shape = self._look(points, held)
-        slope = self._native.values(rows, True)[1]
+        columns, shape = self._look(points, held)
+        slope = self._native.values(columns, True)[1]
         return {axis[0]: _shaped(slope[:, k], shape) for k, axis in enumerate(self._native.axes)}
 
     def at(self, points=None, **held):
         """Value, standard deviation, slopes, and whether each point lies outside or has no data around: Values."""
-        rows, shape = self._look(points, held)
-        value, sigma, slope, outside, no_data = self._native.at(rows)
+        columns, shape = self._look(points, held)
+        value, sigma, slope, outside, no_data = self._native.at(columns)
         slopes = {axis[0]: _shaped(slope[:, k], shape) for k, axis in enumerate(self._native.axes)}
         return Values(_shaped(value, shape), _shaped(sigma, shape), slopes, _shaped(outside, shape),
                       _shaped(no_data, shape))

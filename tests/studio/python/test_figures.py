@@ -85,6 +85,18 @@ def test_two_axes_by_name_broadcast(program, tmp_path):
     assert grid.ravel().tolist() == [one["value"] for one in line["values"]]
     assert table(gap="5 mm", pitch="1 deg") == table(gap=0.005, pitch=numpy.radians(1.0))
     assert table(numpy.array([[0.005, 0.0]]))[0] == table(gap=0.005, pitch=0)
+    # However the same points lie in memory, by place or by name, with one number for all of them, and none at all.
+    points = numpy.stack(numpy.broadcast_arrays(gaps[:, None], pitches), axis=-1)
+    flat = points.reshape(-1, 2)
+    for same in (table(points), table(numpy.asfortranarray(points)), table(gap=points[..., 0], pitch=points[..., 1]),
+                 table(flat[::-1])[::-1].reshape(7, 2), table(gap=flat[:, 0], pitch=flat[:, 1].copy()).reshape(7, 2)):
+        assert (same == grid).all()
+    assert (table(gap=gaps, pitch=pitches[0]) == grid[:, 0]).all()
+    assert (table.at(flat).value == grid.ravel()).all() and (table.slopes(flat)["pitch"] == table.at(flat).slope["pitch"]).all()
+    assert table(flat[:0]).shape == (0,) and table(gap=[], pitch=0).shape == (0,)
+    for wrong in (flat[:, :1], numpy.zeros((3, 3)), 0.005):
+        with pytest.raises(underbody.UsageError, match="one column for each axis"):
+            table(wrong)
     # The slope of the value along the gap, by differences.
     step = 1e-6
     slope = (table(gap=gaps + step, pitch=0) - table(gap=gaps - step, pitch=0)) / (2 * step)
