@@ -55,6 +55,7 @@ public:
         measurements();
         thesis("thesis");
         thesis("dynamics");
+        search();
         trust();
         loads();
         provenance();
@@ -381,6 +382,15 @@ private:
                 page_.picture(*picture);
             }
         }
+    }
+
+    /// A search has a page of its own: this one says so, instead of nothing.
+    void search() {
+        if (!engine_.study.design) {
+            return;
+        }
+        page_.section("The search for a better shape");
+        page_.paragraph("Its plan, surrogates, sensitivities and best designs: underbody design report STUDY");
     }
 
     void trust() {

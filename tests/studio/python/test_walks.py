@@ -70,9 +70,3 @@ def test_pictures(made):
     # The measure tells pictures apart.
     windows = [pixels(FOLDER / name) for name in names if name.startswith("window")]
     assert difference(windows[0], windows[1]) > 0.15
-
-
-def test_the_gallery_names_every_shipped_study():
-    page = (SOURCE / "docs" / "gallery.md").read_text()
-    studies = sorted(path.parent.name for path in (SOURCE / "cases").glob("*/study.toml"))
-    assert studies and all(f"`cases/{name}`" in page and f"gallery/{name}/index.html" in page for name in studies)
