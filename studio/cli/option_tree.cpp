@@ -2,19 +2,45 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "core/text.h"
 
 namespace underbody::studio {
 
 namespace {
 
-/// Of a check such as {automatic,file,reversed}; none for others.
+/// Of a description such as "C: double | float | fixed (whole numbers)" or "up: lift positive up | ned: body axes".
+std::vector<std::string> described_choices(const std::string& description) {
+    const auto parts = core::split(description, '|');
+    std::vector<std::string> choices;
+    for (std::size_t i = 0; i < parts.size() && parts.size() > 1; ++i) {
+        const auto words = core::split(core::trimmed(parts[i]), ' ');
+        const auto is_word = [](std::string_view word) {
+            return !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz_-") == std::string_view::npos;
+        };
+        std::string_view word = words.front();
+        word = word.substr(0, word.find_first_of(":,"));
+        // What the first is a choice of may stand before it.
+        if (i == 0 && words.size() > 1 && !(is_word(word) && words.front().ends_with(':'))) {
+            word = words.back();
+        }
+        if (!is_word(word)) {
+            return {};
+        }
+        choices.emplace_back(word);
+    }
+    return choices;
+}
+
+/// Of a check such as {automatic,file,reversed}, or those that the description names.
 std::vector<std::string> choices_of(const CLI::Option& option) {
     std::vector<std::string> choices;
     const std::string type = option.get_type_name();
     const std::size_t open = type.find('{');
     const std::size_t close = type.find('}');
     if (open == std::string::npos || close == std::string::npos) {
-        return choices;
+        return described_choices(option.get_description());
     }
     for (std::size_t begin = open + 1; begin < close;) {
         const std::size_t end = std::min(type.find(',', begin), close);

@@ -103,6 +103,14 @@ TEST(Completion, OffersCommandsOptionsAndTheirChoices) {
     EXPECT_THAT(tabbed("underbody table eq"), testing::HasSubstr("\nequilibria\n"));
     EXPECT_THAT(tabbed("underbody loads body.csv --sym"), testing::HasSubstr("\n--symmetry\n"));
     EXPECT_THAT(tabbed("underbody loads body.csv --fluid re"), testing::HasSubstr("\nreversed\n"));
+    // Those that only the description names.
+    EXPECT_EQ(tabbed("underbody export lift.csv --format "),
+              "\nc\ncsv\njson\nmat\njsbsim\nsimulink\nmodelica\nfmu\n");
+    EXPECT_EQ(tabbed("underbody export lift.csv --number "), "\ndouble\nfloat\nfixed\n");
+    EXPECT_EQ(tabbed("underbody export lift.csv --frame "), "\nup\nned\n");
+    EXPECT_EQ(tabbed("underbody export glide.toml --motion "), "\nheave\nheave-pitch\nbody\n");
+    EXPECT_EQ(tabbed("underbody table fit lift.csv --range "), "\nclamp\nrefuse\nextrapolate\n");
+    EXPECT_EQ(tabbed("underbody table fit lift.csv --kind g"), "\ngaussian_process\n");
     EXPECT_THAT(tabbed("underbody loads --thr"), testing::HasSubstr("\n--threads\n"));
     EXPECT_THAT(tabbed("underbody region --sym"), testing::Not(testing::HasSubstr("--symmetry")));
 }
