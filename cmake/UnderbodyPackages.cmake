@@ -61,11 +61,6 @@ install(DIRECTORY ${CMAKE_SOURCE_DIR}/cases/evie ${CMAKE_SOURCE_DIR}/cases/evie-
         DESTINATION ${CMAKE_INSTALL_DATADIR}/underbody/cases COMPONENT program
         PATTERN ".underbody" EXCLUDE PATTERN "runs" EXCLUDE)
 
-install(FILES ${CMAKE_SOURCE_DIR}/cmake/packages/org.underbody.studio.metainfo.xml
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT studio)
-install(FILES ${CMAKE_SOURCE_DIR}/cmake/packages/org.underbody.studio.xml
-        DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages COMPONENT studio)
-
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME underbody)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
