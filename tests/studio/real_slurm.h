@@ -69,7 +69,7 @@ protected:
         }
         test::write_stand_in_solver(folder_.path() / "bin");
         write_study("study");
-        hook("sleep 0.1");
+        hold();
     }
     void TearDown() override {
         if (reason_.empty()) {  // nothing of this test runs on into the next
@@ -90,6 +90,14 @@ protected:
                              "\npitch = \"1 deg\"\nspeed = \"0.5 m/s\"\nconditions = { mesh = \"coarse\" }\n"
                              "mesher = \"snappy\"\niterations = 40\n");
     }
+    /// Cases that are begun stop at half their iterations until they are released: none ends before its test has seen
+    /// it.
+    void hold() {
+        const std::string held = (folder_.path() / "held").string();
+        core::write_file(held, "");
+        hook("while [ $i -ge 20 ] && [ -e '" + held + "' ]; do sleep 0.1; done");
+    }
+    void release() { std::filesystem::remove(folder_.path() / "held"); }
     void hook(const std::string& script) { core::write_file(folder_.path() / "hook", script + "\n"); }
     [[nodiscard]] std::filesystem::path runs() const { return folder_.path() / "study" / "runs"; }
     [[nodiscard]] std::map<std::string, std::string> environment() const {
@@ -138,6 +146,14 @@ protected:
             std::this_thread::sleep_for(std::chrono::milliseconds(200));
         }
         return false;
+    }
+    /// A task that was queued again: Slurm lets it wait for two minutes; what was killed has ended long before, here it
+    /// is given three seconds.
+    void start_now(const std::string& task) {
+        std::this_thread::sleep_for(std::chrono::seconds(3));
+        EXPECT_TRUE(wait_for([&] {
+            return slurm("scontrol", {"update", "JobId=" + task, "StartTime=now"}).exit_code == 0;
+        }));
     }
     void expect_all_solved(std::size_t cases) {
         EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == cases; }))

@@ -17,12 +17,13 @@ using testing::HasSubstr;
 TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
     const std::string job = submit();
     ASSERT_FALSE(job.empty());
-    EXPECT_TRUE(wait_for([&] { return count(states(), "running") == 2; }, 20)) << json(states());
+    EXPECT_TRUE(wait_for([&] { return count(states(), "running") == 2; })) << json(states());
     EXPECT_THAT(run({"sweep", "study", "--engine", "slurm"}).output,
                 HasSubstr("nothing is missing that does not wait or run"));
     // Begun jobs hold the lock of their case, others have its mark.
     EXPECT_THAT(run({"sweep", "study"}).output, testing::AnyOf(HasSubstr("left alone: submitted as job " + job),
                                                                HasSubstr("left alone: being made by process")));
+    release();
     expect_all_solved(2);
     for (const auto& [name, state] : states()) {
         EXPECT_EQ(meshed(name), 1U) << name;
@@ -30,7 +31,6 @@ TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
     // The same bytes as on this machine.
     const fs::path by_slurm = folder_.path() / "by-slurm";
     fs::rename(runs(), by_slurm);
-    hook("true");
     ASSERT_EQ(run({"sweep", "study"}).exit_code, 0);
     const auto local = results_below(runs()), remote = results_below(by_slurm);
     EXPECT_FALSE(local.empty());
@@ -41,43 +41,39 @@ TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
 }
 
 TEST_F(RealSlurm, ACancelledJobFreesItsCasesForTheNext) {
-    hook("sleep 0.2");
     const std::string job = submit();
-    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; }, 20)) << json(states());
+    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; })) << json(states());
     ASSERT_EQ(slurm("scancel", {job}).exit_code, 0);
     EXPECT_TRUE(wait_for([&] { return count(states(), "running") + count(states(), "waiting") == 0; }))
         << json(states());
     EXPECT_EQ(count(states(), "solved"), 0U);
-    hook("true");
+    release();
     EXPECT_NE(submit(), job);
     expect_all_solved(2);
 }
 
 TEST_F(RealSlurm, AKilledTaskIsMissingAgainAndTheOtherGoesOn) {
-    hook("sleep 0.1");
     const std::string job = submit();
-    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; }, 20)) << json(states());
+    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; })) << json(states());
     ASSERT_EQ(slurm("scancel", {"--signal=KILL", "--full", job + "_1"}).exit_code, 0);
+    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 1; })) << json(states());
+    release();
     EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == 1 && count(states(), "running") == 0; }))
         << json(states());
     EXPECT_EQ(count(states(), "waiting"), 0U);
-    hook("true");
     submit();
     expect_all_solved(2);
 }
 
 TEST_F(RealSlurm, ARequeuedTaskWaitsForItsSecondRunAndFinishes) {  // as one that was preempted
-    hook("sleep 0.1");
     const std::string job = submit();
-    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; }, 20)) << json(states());
+    ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; })) << json(states());
     ASSERT_EQ(slurm("scontrol", {"requeue", job + "_1"}).exit_code, 0);
-    EXPECT_TRUE(wait_for([&] { return count(states(), "waiting") == 1; }, 20)) << json(states());
+    EXPECT_TRUE(wait_for([&] { return count(states(), "waiting") == 1; })) << json(states());
     EXPECT_THAT(run({"sweep", "study", "--engine", "slurm"}).output,
                 HasSubstr("nothing is missing that does not wait or run"));
-    hook("true");
-    // Slurm lets it wait for two minutes; what was killed has ended long before, here it is given three seconds.
-    std::this_thread::sleep_for(std::chrono::seconds(3));
-    ASSERT_EQ(slurm("scontrol", {"update", "JobId=" + job + "_1", "StartTime=now"}).exit_code, 0);
+    release();
+    start_now(job + "_1");
     expect_all_solved(2);
 }
 
@@ -91,12 +87,13 @@ TEST_F(RealSlurm, WhatWaitsForADrainedNodeIsLeftToIt) {
     EXPECT_EQ(local.exit_code, 0) << local.errors;
     EXPECT_THAT(local.output, HasSubstr("left alone: submitted as job " + job));
     ASSERT_EQ(slurm("scontrol", {"update", "NodeName=" + node, "State=RESUME"}).exit_code, 0);
+    release();
     expect_all_solved(2);
 }
 
 TEST_F(RealSlurm, MoreCasesThanTheSiteTakesInOneArrayMakeSeveral) {
     write_study("study", "[\"5 mm\", \"6 mm\", \"7 mm\", \"8 mm\", \"10 mm\"]");
-    hook("true");
+    release();
     const auto submitted = run({"sweep", "study", "--engine", "slurm", "--json"});
     ASSERT_EQ(submitted.exit_code, 0) << submitted.errors;
     EXPECT_EQ(json::parse(submitted.output).at("arrays").size(), 3U);
@@ -132,11 +129,9 @@ TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
     ASSERT_EQ(
         slurm("sbatch", {"--partition=urgent", "--ntasks=2", "--output=/dev/null", "--wrap", "sleep 1"}).exit_code, 0);
     EXPECT_TRUE(wait_for([&] { return count(states(), "waiting") == 2; })) << json(states());
-    hook("true");
-    // Slurm lets them wait for two minutes; what was killed has ended long before, here it is given three seconds.
-    std::this_thread::sleep_for(std::chrono::seconds(3));
+    release();
     for (const char* task : {"_1", "_2"}) {
-        ASSERT_EQ(slurm("scontrol", {"update", "JobId=" + job + task, "StartTime=now"}).exit_code, 0);
+        start_now(job + task);
     }
     expect_all_solved(2);
     for (const auto& [name, state] : states()) {
@@ -150,7 +145,7 @@ TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
 }
 
 TEST_F(RealSlurm, AJobRunsTheStudyWhenTheArraysHaveEnded) {
-    hook("true");
+    release();
     const auto made = run({"sweep", "study", "--engine", "slurm", "--run-study", "--wait", "--json"});
     ASSERT_EQ(made.exit_code, 0) << made.output << made.errors;
     for (const auto& one : listed(made.output)) {
@@ -189,7 +184,7 @@ TEST_F(RealSlurm, OneCaseAtATimeUntilAllIsCancelled) {
         << json(states());
     EXPECT_EQ(count(states(), "solved"), 0U);
     EXPECT_THAT(run({"sweep", "study", "--cancel"}).output, HasSubstr("Slurm has no job of this sweep"));
-    hook("true");
+    release();
     submit();
     expect_all_solved(2);
 }

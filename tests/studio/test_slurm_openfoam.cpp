@@ -115,11 +115,7 @@ TEST_F(RealSlurm, OpenFoamOnTwoCoresGoesOnFromItsDecomposedCheckpoint) {
     fs::create_directories(folder_.path() / "again" / "runs");
     fs::copy(unfinished, folder_.path() / "again" / "runs" / unfinished.filename(),
              fs::copy_options::recursive | fs::copy_options::copy_symlinks);
-    // Slurm lets it wait for two minutes.
-    std::this_thread::sleep_for(std::chrono::seconds(3));
-    ASSERT_TRUE(wait_for([&] {
-        return slurm("scontrol", {"update", "JobId=" + job + "_1", "StartTime=now"}).exit_code == 0;
-    }));
+    start_now(job + "_1");
     EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == 1; }, 200)) << json(states());
     const fs::path solved = runs() / case_name;
     EXPECT_TRUE(fs::exists(solved / std::to_string(iterations) / "U"));
