@@ -104,8 +104,7 @@ TEST(Completion, OffersCommandsOptionsAndTheirChoices) {
     EXPECT_THAT(tabbed("underbody loads body.csv --sym"), testing::HasSubstr("\n--symmetry\n"));
     EXPECT_THAT(tabbed("underbody loads body.csv --fluid re"), testing::HasSubstr("\nreversed\n"));
     // Those that only the description names.
-    EXPECT_EQ(tabbed("underbody export lift.csv --format "),
-              "\nc\ncsv\njson\nmat\njsbsim\nsimulink\nmodelica\nfmu\n");
+    EXPECT_EQ(tabbed("underbody export lift.csv --format "), "\nc\ncsv\njson\nmat\njsbsim\nsimulink\nmodelica\nfmu\n");
     EXPECT_EQ(tabbed("underbody export lift.csv --number "), "\ndouble\nfloat\nfixed\n");
     EXPECT_EQ(tabbed("underbody export lift.csv --frame "), "\nup\nned\n");
     EXPECT_EQ(tabbed("underbody export glide.toml --motion "), "\nheave\nheave-pitch\nbody\n");
