@@ -12,7 +12,8 @@ struct HeadingText {
     std::optional<std::string> unit;  ///< what stands in the brackets, may be empty; nothing without brackets
 };
 
-/// Name and unit as they are written; nothing when a bracket opens and does not close at the end.
+/// Name and unit as they are written, of a known quantity also as "gap (mm)"; nothing when a bracket opens and does not
+/// close at the end.
 std::optional<HeadingText> heading_text(std::string_view cell);
 
 }  // namespace underbody::core

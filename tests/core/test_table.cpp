@@ -80,6 +80,19 @@ TEST(Table, ConvertsToSiAndKeepsUnknownColumns) {
     EXPECT_EQ(table.comments.at(0), "made by hand");
 }
 
+TEST(Table, TakesUnitsOfKnownQuantitiesInParentheses) {
+    const Table table =
+        read_csv("time (s), gap (mm), lift_force_sigma ( mN ), area (m2), gap (note)\n1,5,20,3,4\n", "p.csv");
+    EXPECT_DOUBLE_EQ(table.numbers("gap")[0], 5e-3);
+    EXPECT_EQ(table.find("gap")->unit, "m");
+    EXPECT_DOUBLE_EQ(table.numbers("lift_force_sigma")[0], 0.02);
+    EXPECT_DOUBLE_EQ(table.numbers("time")[0], 1);
+    // what is no known quantity, or no unit, is a name as it stands
+    EXPECT_EQ(table.text("area (m2)")[0], "3");
+    EXPECT_EQ(table.text("gap (note)")[0], "4");
+    EXPECT_THROW(read_csv("gap (N)\n1\n", "p.csv"), InputError);
+}
+
 TEST(Table, ASigmaOfATemperatureIsADifference) {
     const Table table = read_csv("temperature [degC], temperature_sigma [degC]\n20, 0.5\n", "text");
     EXPECT_NEAR(table.numbers("temperature")[0], 293.15, 1e-9);
