@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""make.py [FOLDER]: ten short walks with pictures, made by the programs themselves in a copy of cases/evie: five with the command
-line, five in the window. Writes walks.md and its pictures beside this script (or into FOLDER); a test makes them again and compares.
+"""make.py [--command-line] [FOLDER]: ten short walks with pictures, made by the programs themselves in a copy of cases/evie: five
+with the command line, five in the window. Writes walks.md and its pictures beside this script (or into FOLDER); a test makes them
+again and compares. --command-line: those five alone; the window's stay as they are there.
 
 UNDERBODY_PROGRAM, UNDERBODY_STUDIO: the programs (default: build/release/bin).
 """
@@ -90,14 +91,22 @@ def window_walks(study, out):
 
 
 def main():
-    out = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
+    words = sys.argv[1:]
+    window = "--command-line" not in words
+    words = [word for word in words if word != "--command-line"]
+    out = pathlib.Path(words[0]) if words else HERE
     with tempfile.TemporaryDirectory() as scratch:
         study = pathlib.Path(scratch) / "evie"
         shutil.copytree(ROOT / "cases" / "evie", study, ignore=shutil.ignore_patterns(".underbody"))
         text = ("# Ten walks\n\nMade by `docs/walks/make.py` from the programs, in a copy of the shipped study; a test makes them "
                 "again and compares.\n\n## With the command line\n")
         text += command_walks(study, out)
-        text += ("\n## In the window\n\n`underbody-studio cases/evie`; the lines are those of its list of commands, each also done "
+        head = "\n## In the window"
+        if not window:
+            there = (out / "walks.md").read_text()
+            (out / "walks.md").write_text(text + there[there.index(head):])
+            return
+        text += (head + "\n\n`underbody-studio cases/evie`; the lines are those of its list of commands, each also done "
                  "with the mouse.\n")
         text += window_walks(study, out)
         (out / "walks.md").write_text(text)

@@ -171,7 +171,7 @@ private:
         if (std::isfinite(law_.limit)) {
             out_ += "    if (u > " + number(law_.limit) + ") {\n        u = " + number(law_.limit) +
                     ";\n    } else if (u < -" + number(law_.limit) + ") {\n        u = -" + number(law_.limit) +
-                    ";\n    }\n";
+                    ";\n    } else {\n        /* within the limit */\n    }\n";
         }
         out_ += "    c->command = u;\n    " + name_ + "_follow(c, u);\n    return u;\n}\n\n";
         out_ += "static inline double " + name_ + "_step(" + name_ + "_state *c, double gap" + sensors() +

@@ -10,6 +10,7 @@
 #include "cases/thesis/published.h"
 #include "core/file.h"
 #include "surrogates/estimator/control/closed_loop.h"
+#include "tests/support/misra.h"
 
 namespace underbody::estimator {
 namespace {
@@ -213,6 +214,30 @@ TEST(ControllerInC, SaysWhatItIsMadeOf) {
     EXPECT_THAT(text, ::testing::HasSubstr("holds a gap of 0.02 m, sampled every 0.02 s"));
     EXPECT_THAT(text, ::testing::HasSubstr("made from: model.toml"));
     EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("odd */")));
+}
+
+TEST(ControllerInC, KeepsToTheRequiredRulesOfMisra) {
+    if (!have("cppcheck") || !have("python3")) {
+        GTEST_SKIP() << "skipped: cppcheck (with python3 for its addon) is not installed";
+    }
+    const core::TemporaryFolder folder;
+    for (const std::string name : {"disturbance", "reduced", "full", "latent", "kalman", "none"}) {
+        SeparatedPlant plant = reference_plant();
+        LoopOptions o = loop_options();
+        if (name == "disturbance") {
+            plant.actuator = {0.05, 2e-4, 0.9, 0.1};
+            o.actuator_lag = 0.05;
+        }
+        ControlLaw law = hold_at(0.02, plant.virtual_mass, -1, -2);
+        law.limit = 0.03;
+        core::write_file(folder.path() / (name + ".h"),
+                         export_controller_c(plant, law, design_loop_estimator(name, plant, {}), o, name));
+        core::write_file(folder.path() / (name + ".c"),
+                         "#include \"" + name + ".h\"\nint main(void);\nint main(void)\n{\n    return 0;\n}\n");
+        const test::MisraFindings found = test::misra_findings(folder.path(), name);
+        EXPECT_THAT(found.required, ::testing::IsEmpty()) << name << "\n" << found.text;
+        EXPECT_FALSE(found.rules.empty()) << "the addon ran: it names advisory rules\n" << found.text;
+    }
 }
 
 /// With no estimator the sensors are all there is: the feedback on estimates is that on measurements.
