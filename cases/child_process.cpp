@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "core/error.h"
@@ -221,6 +223,35 @@ std::optional<int> ChildProcess::ended() {
     ::waitpid(process_, &status, 0);
     code_ = code_of(status);
     return code_;
+}
+
+ChildProcess::Use ChildProcess::use() const {
+    Use result;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
+        const auto process = core::parse_integer(entry.path().filename().string());
+        std::ifstream file(process ? entry.path() / "stat" : std::filesystem::path());
+        std::string line;
+        if (!process || !std::getline(file, line)) {
+            continue;
+        }
+        // "pid (name) state parent group ...", where the name may hold anything; times are the 14th to 17th.
+        std::istringstream words(line.substr(std::min(line.size(), line.rfind(')') + 1)));
+        std::string state, skipped;
+        long parent = 0, group = 0, ticks = 0;
+        words >> state >> parent >> group;
+        if (group != process_) {
+            continue;
+        }
+        for (int i = 6; i <= 13; ++i) {
+            words >> skipped;
+        }
+        for (int i = 14; i <= 17 && words >> ticks; ++i) {
+            result.processor_seconds += static_cast<double>(ticks) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+        }
+        result.stopped = result.stopped || state == "T" || state == "t";
+    }
+    return result;
 }
 
 void ChildProcess::stop() {

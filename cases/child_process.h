@@ -33,6 +33,13 @@ public:
 
     /// Its exit code (128 and the signal when it was killed) as soon as it has ended; nothing while it runs.
     std::optional<int> ended();
+    /// Processor seconds of the group's processes and of those they have waited for, and whether one of them is
+    /// stopped.
+    struct Use {
+        double processor_seconds = 0;
+        bool stopped = false;
+    };
+    [[nodiscard]] Use use() const;
     /// Ends the group: politely, after two seconds by force.
     void stop();
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "cases/design_file.h"
+#include "cases/volume_fault.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -179,6 +180,15 @@ std::size_t Design::make_plan(core::Progress& progress) {
         PlannedDesign design{numbered(plan_.size()), {}, spec_.fidelities.front().name, "plan", "planned"};
         for (std::size_t v = 0; v < axes; ++v) {
             design.at.push_back(spec_.variables[v].unscaled(u[v]));
+        }
+        try {
+            // What is known without a run costs none.
+            const std::string fault = volume_fault(spec_, shape_at(spec_, base_, design.at));
+            if (!fault.empty()) {
+                design.state = one_field(fault);
+            }
+        } catch (const core::InputError&) {
+            // No possible shape: its state says so when the shapes are written.
         }
         plan_.push_back(std::move(design));
     }

@@ -102,6 +102,14 @@ void Design::solve(const Study& study, int jobs, core::Progress& progress) {
     if (write_shapes()) {  // of designs that were typed into plan.csv
         write_plan();
     }
+    const auto can_be = [](const PlannedDesign& d) { return d.state == "planned"; };
+    if (!plan_.empty() && std::none_of(plan_.cbegin(), plan_.cend(), can_be)) {
+        throw core::InputError("empty",
+                               "there is nothing to run: of " + std::to_string(plan_.size()) +
+                                   " designs none can be. " + plan_.front().name + ": " + plan_.front().state,
+                               {(spec_.folder / "plan.csv").string(), {}, {}, {}},
+                               "other ranges in [[design.vary]] or limits in [design.volume], without this plan.csv");
+    }
     for (const FidelitySpec& fidelity : spec_.fidelities) {
         Study with_sweep = study;
         with_sweep.sweep = sweep_of(spec_, fidelity, plan_, study);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "cases/volume_fault.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -42,7 +43,8 @@ tables::SearchVariable variable_from(const TomlTable& table) {
     v.name = table.string("key");
     v.unit = geometry::parameter_unit(v.name, table.place("key"));
     if (v.unit.empty()) {
-        throw core::InputError("name", "a shape has no number '" + v.name + "'", table.place("key"));
+        throw core::InputError("name", "'" + v.name + "' of a shape is a choice, not a number with a range",
+                               table.place("key"), "a study for each choice, or 'body sweep' with its values");
     }
     v.lower = table.quantity("from", v.unit);
     v.upper = table.quantity("to", v.unit);
@@ -56,6 +58,19 @@ tables::SearchVariable variable_from(const TomlTable& table) {
                                table.place("from"));
     }
     return v;
+}
+
+/// A condition of which [design] has one value need not be said; where it is said, it is that one.
+void drop_the_only_values(tables::Response& r, const DesignSpec& spec) {
+    const auto only = [&](const char* name, const std::vector<double>& values) {
+        std::erase_if(r.conditions, [&](const auto& c) {
+            return c.name == name && values.size() == 1 &&
+                   std::abs(c.value - values.front()) <= 1e-9 * std::abs(values.front());
+        });
+    };
+    only("gap", spec.gaps);
+    only("pitch", spec.pitches);
+    only("speed", spec.speeds);
 }
 
 /// A response with the conditions of `at`; conditions that have one value need not be said.
@@ -90,28 +105,59 @@ tables::Response response_from(const TomlTable& table, const DesignSpec& spec) {
         table.accept("half_width");
     }
     r.name = table.string_or("name", r.name);
+    drop_the_only_values(r, spec);
     return r;
 }
 
-void check_response(const tables::Response& r, const std::vector<std::string>& conditions, const core::Place& place) {
-    for (const std::string& name : conditions) {
-        if (std::none_of(r.conditions.begin(), r.conditions.end(), [&](const auto& c) { return c.name == name; })) {
-            throw core::InputError("missing", "\"" + r.name + "\" does not say at which " + name, place,
-                                   "at = { " + name + " = ... }");
+/// Surrogates know nothing beyond the conditions that are computed.
+void check_inside(const tables::Response& r, const tables::SearchVariable& v, double at, const core::Place& place) {
+    const double half = r.slope_along == v.name ? r.half_width : 0, rounding = 1e-9 * (v.upper - v.lower);
+    if (at - half >= v.lower - rounding && at + half <= v.upper + rounding) {
+        return;
+    }
+    const std::string shown = geometry::shown_value(at, v.unit, 6), range = geometry::shown_value(v.lower, v.unit, 6) +
+                                                                            " to " +
+                                                                            geometry::shown_value(v.upper, v.unit, 6);
+    throw core::InputError("range",
+                           "\"" + r.name + "\" is taken at a " + v.name + " of " + shown +
+                               (half > 0 ? " +- " + geometry::shown_value(half, v.unit, 6) : "") +
+                               ", and [design] computes " + range,
+                           place, "take it there, or add values of " + v.name + " to [design]");
+}
+
+void check_response(const tables::Response& r, const std::vector<tables::SearchVariable>& conditions,
+                    const core::Place& place) {
+    std::vector<std::string> names;
+    for (const tables::SearchVariable& v : conditions) {
+        names.push_back(v.name);
+        const auto said =
+            std::find_if(r.conditions.begin(), r.conditions.end(), [&](const auto& c) { return c.name == v.name; });
+        if (said == r.conditions.end()) {
+            throw core::InputError("missing", "\"" + r.name + "\" does not say at which " + v.name, place,
+                                   "at = { " + v.name + " = ... }");
         }
+        check_inside(r, v, said->value, place);
     }
     for (const auto& condition : r.conditions) {
-        if (std::find(conditions.begin(), conditions.end(), condition.name) == conditions.end()) {
+        if (std::find(names.begin(), names.end(), condition.name) == names.end()) {
             throw core::InputError("condition",
                                    "\"" + r.name + "\" states " + condition.name + ", which has one value in [design]",
                                    place, "leave it out, or give [design] several values of it");
         }
     }
-    if (!r.slope_along.empty() && std::find(conditions.begin(), conditions.end(), r.slope_along) == conditions.end()) {
+    if (!r.slope_along.empty() && std::find(names.begin(), names.end(), r.slope_along) == names.end()) {
         throw core::InputError(
             "condition",
             "\"" + r.name + "\" is a slope along " + r.slope_along + ", of which [design] has no two values", place,
-            core::did_you_mean(r.slope_along, conditions));
+            core::did_you_mean(r.slope_along, names));
+    }
+}
+
+/// Two of one name could not be told apart in tables and files.
+void check_name(std::set<std::string>& names, const std::string& name, const char* what, const core::Place& place) {
+    if (!names.insert(name).second) {
+        throw core::InputError("name", std::string("there are two ") + what + " '" + name + "'", place,
+                               "name = \"...\" of each, or one of them");
     }
 }
 
@@ -134,6 +180,10 @@ void limit_from(const TomlTable& table, DesignSpec& spec) {
     const auto lower = table.find_quantity("at_least", unit), upper = table.find_quantity("at_most", unit);
     if (!lower && !upper) {
         (void)table.quantity("at_least", unit);  // says how it is written
+    }
+    if (lower && upper && *lower > *upper) {
+        throw core::InputError("range", table.path_of("at_least") + " is above at_most: no design can meet both",
+                               table.place("at_least"));
     }
     spec.limits.push_back({response, lower.value_or(-1e300), upper.value_or(1e300)});
     spec.limit_places.push_back(table.place());
@@ -182,8 +232,13 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
                                    design.place("quantities"), "underbody list quantities");
         }
     }
+    std::set<std::string> varied, tied;
     for (const TomlTable& table : design.tables("vary")) {
         spec.variables.push_back(variable_from(table));
+        if (!varied.insert(spec.variables.back().name).second) {
+            throw core::InputError("name", table.path_of("key") + ": " + spec.variables.back().name + " varies twice",
+                                   table.place("key"));
+        }
     }
     if (spec.variables.empty()) {
         throw core::InputError("missing", "[design] varies nothing", design.place(),
@@ -191,6 +246,13 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     }
     for (const TomlTable& table : design.tables("tie")) {
         spec.ties.push_back(geometry::tie_from(table));
+        const std::string& key = spec.ties.back().key;
+        if (varied.contains(key) || !tied.insert(key).second) {
+            throw core::InputError("name",
+                                   table.path_of("key") + ": " + key +
+                                       (varied.contains(key) ? " varies by itself, too" : " is tied twice"),
+                                   table.place("key"), "[[design.vary]] or one [[design.tie]] of it");
+        }
     }
     std::set<std::string> names;
     for (const TomlTable& table : design.tables("fidelity")) {
@@ -211,24 +273,31 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     if (spec.fidelities.empty()) {
         spec.fidelities = {{"medium", {}, 1}};
     }
+    std::set<std::string> objective_names, limit_names;
     for (const TomlTable& table : design.tables("objective")) {
         spec.objectives.push_back(objective_from(table, spec));
         spec.objective_places.push_back(table.place());
+        check_name(objective_names, spec.objectives.back().response.name, "objectives", table.place());
     }
     for (const TomlTable& table : design.tables("limit")) {
         limit_from(table, spec);
+        check_name(limit_names, spec.limits.back().response.name, "limits", table.place());
     }
     const TomlTable volume = design.table_or_empty("volume");
     spec.least_volume = volume.quantity_or("at_least", "m^3", spec.least_volume);
     spec.most_volume = volume.quantity_or("at_most", "m^3", spec.most_volume);
+    if (spec.least_volume > spec.most_volume) {
+        throw core::InputError("range", volume.path_of("at_least") + " is above at_most: no design can meet both",
+                               volume.place("at_least"));
+    }
     return spec;
 }
 
 void check_responses(const DesignSpec& spec) {
-    std::vector<std::string> conditions;
+    std::vector<tables::SearchVariable> conditions;
     for (const auto& v : spec.all_variables()) {
         if (!v.of_shape) {
-            conditions.push_back(v.name);
+            conditions.push_back(v);
         }
     }
     for (std::size_t i = 0; i < spec.objectives.size(); ++i) {
@@ -315,10 +384,26 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
     return shape;
 }
 
+bool limits_volume(const DesignSpec& spec) { return spec.least_volume > 0 || spec.most_volume < 1e299; }
+
+std::string volume_fault(const DesignSpec& spec, const geometry::BodyShape& shape) {
+    if (!limits_volume(spec)) {
+        return {};
+    }
+    const double volume = geometry::ExactBody(shape).volume();
+    const bool small = volume < spec.least_volume;
+    if (!small && volume <= spec.most_volume) {
+        return {};
+    }
+    return "it has " + core::format_number(1e3 * volume, 4) + " L and design.volume wants at " +
+           (small ? "least " : "most ") + core::format_number(1e3 * (small ? spec.least_volume : spec.most_volume), 4) +
+           " L";
+}
+
 double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {
     try {
         const geometry::BodyShape shape = shape_at(spec, base, at);
-        if (spec.least_volume <= 0 && spec.most_volume >= 1e299) {
+        if (!limits_volume(spec)) {
             return -1;
         }
         const double volume = geometry::ExactBody(shape).volume();

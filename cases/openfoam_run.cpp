@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -13,6 +15,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "postproc/importers/reports/openfoam_forces.h"
 #include "postproc/loads/settled.h"
 
@@ -81,6 +84,20 @@ void put_together(const fs::path& folder, const std::vector<std::pair<std::strin
             }
         }
     }
+}
+
+/// s of processor time without a word.
+double hung_after() {
+    const char* asked = std::getenv("UNDERBODY_HUNG_AFTER");
+    if (asked == nullptr || *asked == '\0') {
+        return StallWatch::usual_limit;
+    }
+    const double limit = core::parse_in(asked, "s");
+    if (!(limit > 0)) {
+        throw core::InputError("range", "UNDERBODY_HUNG_AFTER is '" + std::string(asked) + "'", {},
+                               "a time above zero, such as UNDERBODY_HUNG_AFTER=30min");
+    }
+    return limit;
 }
 
 /// What OpenFOAM said when it failed: the lines of its fatal error, else the last ones.
@@ -191,7 +208,7 @@ void need_openfoam() {
 }
 
 OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
-    : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()) {
+    : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()), stall_(hung_after()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
         throw core::InputError("missing",
@@ -250,7 +267,12 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
 bool OpenFoamRun::finished() {
     const auto code = child_->ended();
     if (!code) {
-        look_at_loads();
+        const auto now = std::chrono::steady_clock::now();
+        if (now - looked_ >= std::chrono::seconds(1)) {
+            looked_ = now;
+            look_at_loads();
+            look_whether_it_hangs();
+        }
         return false;
     }
     if (*code == 0) {
@@ -264,28 +286,56 @@ bool OpenFoamRun::finished() {
         const fs::path named = folder_ / ("log." + text.substr(begin, failed - begin));
         log = fs::is_regular_file(named) ? named : log;
     }
-    if (*code > 128) {
+    // What a program does to itself is no signal from outside: OpenFOAM ends itself by them when it diverges.
+    const std::array own = {128 + SIGFPE, 128 + SIGABRT, 128 + SIGSEGV, 128 + SIGBUS, 128 + SIGILL};
+    if (*code > 128 && std::find(own.begin(), own.end(), *code) == own.end()) {
         throw core::InputError("killed", "the solver was ended by signal " + std::to_string(*code - 128),
                                {log.string(), {}, {}, {}}, "the next solve goes on from its last checkpoint");
     }
-    throw core::InputError("solver", "the solver ended with code " + std::to_string(*code) + ": " + last_words(log),
+    const std::string words =
+        *code == 128 + SIGFPE ? "a floating-point exception: the solution diverged" : last_words(log);
+    throw core::InputError("solver",
+                           (*code > 128 ? "the solver ended itself by signal " + std::to_string(*code - 128)
+                                        : "the solver ended with code " + std::to_string(*code)) +
+                               (words.empty() ? "" : ": " + words),
                            {log.string(), {}, {}, {}});
 }
 
 void OpenFoamRun::look_at_loads() {
-    const auto now = std::chrono::steady_clock::now();
-    if (!watched_ || now - looked_ < std::chrono::seconds(1) || !fs::is_directory(folder_ / "postProcessing")) {
+    if (!watched_ || !fs::is_directory(folder_ / "postProcessing")) {
         return;
     }
-    looked_ = now;
+    SettledLoads loads;
     try {
-        const SettledLoads loads = settled_loads(folder_);
-        if (loads.settled) {
-            core::write_file(folder_ / settled_file, loads.text + "\n");
-            watched_ = false;
-        }
+        loads = settled_loads(folder_);
     } catch (const core::InputError&) {
-        // A row is being written, or the solution diverges: the end of the run tells.
+        return;  // a row is being written: the next look, or the end of the run, tells
+    }
+    if (!std::isfinite(loads.resultant)) {
+        stop();
+        throw core::InputError("solver", "its forces are no longer finite: the solution diverged",
+                               {(folder_ / "postProcessing").string(), {}, {}, {}});
+    }
+    if (loads.settled) {
+        core::write_file(folder_ / settled_file, loads.text + "\n");
+        watched_ = false;
+    }
+}
+
+void OpenFoamRun::look_whether_it_hangs() {
+    std::uintmax_t said = 0;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+        if (entry.path().filename().string().starts_with("log.") && entry.is_regular_file(ignored)) {
+            said += entry.file_size(ignored);
+        }
+    }
+    const ChildProcess::Use use = child_->use();
+    const std::string why = stall_.look(said, use.processor_seconds, seconds(), use.stopped);
+    if (!why.empty()) {
+        stop();
+        throw core::InputError("solver", "the solver hangs and was ended: " + why,
+                               {newest_log(folder_).string(), {}, {}, {}});
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "cases/child_process.h"
 #include "cases/lock.h"
+#include "cases/stall_watch.h"
 
 namespace underbody::cases {
 
@@ -49,12 +50,13 @@ public:
     /// Throws core::InputError when the folder is no case with an Allrun, when another process solves it (kind "busy"),
     /// and as need_openfoam().
     /// `lock`: the descriptor of a lock of the caller's that is to last as long as the solver runs; -1: none. `cores`:
-    /// more than one by MPI; what a run that was cut left decomposed is put together first.
+    /// more than one by MPI; what a run that was cut left decomposed is put together first. A solver that hangs is
+    /// ended: see StallWatch, whose limit UNDERBODY_HUNG_AFTER sets.
     explicit OpenFoamRun(std::filesystem::path folder, int lock = -1, int cores = 1);
 
     /// True when its script has ended well. Ends a run whose loads have settled, where the case waits for that. Throws
-    /// core::InputError with the solver's own last words when it failed (kind "solver"), or was ended by a signal (kind
-    /// "killed").
+    /// core::InputError with the solver's own last words when it failed (kind "solver"; one whose forces are no longer
+    /// finite, or that hangs, is ended), or was ended by a signal from outside (kind "killed").
     bool finished();
     /// Ends it; what it wrote stays.
     void stop() { child_->stop(); }
@@ -71,7 +73,9 @@ private:
     std::optional<ChildProcess> child_;
     bool watched_ = false;  // the case waits for settled_file
     std::chrono::steady_clock::time_point looked_;
+    StallWatch stall_;
     void look_at_loads();
+    void look_whether_it_hangs();
 };
 
 }  // namespace underbody::cases

@@ -12,6 +12,7 @@
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
+#include "surrogates/tables/search/limits_alone.h"
 
 namespace underbody::studio {
 
@@ -100,18 +101,30 @@ std::string text_of(const tables::DesignSearch& search, const tables::Candidate&
 int plan(Shell& shell, const Arguments& a) {
     cases::Design design = open(shell, a);
     const std::size_t fresh = design.make_plan(shell.progress());
-    std::size_t refused = 0;
+    json refused = json::array();
+    std::string reasons;
     for (const auto& d : design.plan()) {
-        refused += d.state != "planned" ? 1 : 0;
+        if (d.state != "planned") {
+            refused.push_back({{"design", d.name}, {"state", d.state}});
+            reasons += d.name + ": " + d.state + "\n";
+        }
     }
+    const bool none = !design.plan().empty() && refused.size() == design.plan().size();
     const std::string file = (design.spec().folder / "plan.csv").string();
     if (shell.json) {
-        shell.print_json({{"plan", file}, {"designs", design.plan().size()}, {"new", fresh}, {"refused", refused}});
+        shell.print_json({{"plan", file},
+                          {"designs", design.plan().size()},
+                          {"new", fresh},
+                          {"refused", refused.size()},
+                          {"refused_designs", refused}});
     }
-    shell.print(
-        file + ": " + std::to_string(design.plan().size()) + " designs, " + std::to_string(fresh) + " of them new" +
-        (refused > 0 ? ", " + std::to_string(refused) + " of them no possible shape (column state)" : "") + "\n");
-    return done;
+    shell.print(file + ": " + std::to_string(design.plan().size()) + " designs, " + std::to_string(fresh) +
+                " of them new" +
+                (refused.empty() ? ""
+                 : none          ? "; none of them can be:"
+                                 : "; " + std::to_string(refused.size()) + " of them cannot be:") +
+                "\n" + reasons);
+    return none ? wrong_input : done;
 }
 
 int run(Shell& shell, const Arguments& a) {
@@ -200,9 +213,45 @@ int next(Shell& shell, const Arguments& a) {
     return done;
 }
 
+/// Which limits stand in the way where no design meets all.
+std::string what_excludes(const tables::DesignSearch& search,
+                          const std::map<std::string, tables::Surrogate>& surrogates, const Arguments& a,
+                          std::uint64_t seed, Shell& shell, json& list) {
+    const auto& limits = search.problem().limits;
+    const auto alone = tables::limits_alone(search.problem(), surrogates, a.sigmas, seed, shell.progress());
+    std::string text;
+    bool each = !limits.empty();
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+        const std::string unit = " " + search.unit_of(limits[k].response);
+        json one = {{"name", limits[k].response.name}, {"met_alone", alone[k] && alone[k]->met}};
+        text += "  " + limits[k].response.name + ": ";
+        if (alone[k]) {
+            one["nearest"] = {{"value", alone[k]->nearest.value}, {"sigma", alone[k]->nearest.sigma}};
+            text += std::string(alone[k]->met ? "can be met alone, with " : "cannot be met: at the nearest ") +
+                    core::format_number(alone[k]->nearest.value, 4) + " +- " +
+                    core::format_number(alone[k]->nearest.sigma, 2) + unit;
+        } else {
+            text += "no shape meets the limits that are known without a run";
+        }
+        const auto bound = [&](const char* words, double value) {
+            text +=
+                std::abs(value) < 1e299 ? ", " + std::string(words) + " " + core::format_number(value, 4) + unit : "";
+        };
+        bound("wanted at least", limits[k].lower);
+        bound("at most", limits[k].upper);
+        text += "\n";
+        each = each && alone[k] && alone[k]->met;
+        list.push_back(std::move(one));
+    }
+    return text + (each             ? "  Each can be met alone, but not all at once.\n"
+                   : limits.empty() ? "  No shape meets the limits that are known without a run ([design.volume]).\n"
+                                    : "");
+}
+
 int optimise(Shell& shell, const Arguments& a) {
     const cases::Design design = open(shell, a);
-    const tables::DesignSearch search = design.search(design.surrogates(shell.progress()));
+    const auto surrogates = design.surrogates(shell.progress());
+    const tables::DesignSearch search = design.search(surrogates);
     const auto best = search.optimum(a.sigmas, design.spec().seed, shell.progress());
     const auto front = a.front > 0 ? search.pareto_front(a.front, design.spec().seed, shell.progress())
                                    : std::vector<tables::Candidate>{};
@@ -211,6 +260,10 @@ int optimise(Shell& shell, const Arguments& a) {
         best ? "Best by the surrogates, with every limit met by " + core::format_number(a.sigmas, 3) +
                    " standard deviations. It is a prediction: compute it.\n" + text_of(search, *best)
              : "No design meets every limit by " + core::format_number(a.sigmas, 3) + " standard deviations.\n";
+    json excluded = json::array();
+    if (!best) {
+        text += what_excludes(search, surrogates, a, design.spec().seed, shell, excluded);
+    }
     for (const auto& c : front) {
         list.push_back(json_of(search, design.spec(), c));
         text += "front:\n" + text_of(search, c);
@@ -225,6 +278,7 @@ int optimise(Shell& shell, const Arguments& a) {
     if (shell.json) {
         shell.print_json({{"best", best ? json_of(search, design.spec(), *best) : json()},
                           {"front", list},
+                          {"limits", excluded},
                           {"notes", notes_json(design)}});
     }
     shell.print(text);

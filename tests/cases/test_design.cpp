@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/units.h"
+#include "surrogates/tables/search/limits_alone.h"
 
 namespace {
 
@@ -127,7 +128,8 @@ TEST_F(DesignFiles, APlanIsWrittenOnceAndGoesOn) {
     const PlannedDesign first = open().plan().front();
     EXPECT_NEAR(shape.protrusion->height, first.at[0], 1e-9);
     EXPECT_NEAR(shape.protrusion->length, 12 * first.at[0], 1e-8);  // tied
-    for (const PlannedDesign& d : open().plan()) {
+    const Design planned = open();  // lives as long as the loop
+    for (const PlannedDesign& d : planned.plan()) {
         EXPECT_EQ(d.state, "planned") << d.name;
     }
     // More points later: those that are there stay.
@@ -425,6 +427,76 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
     EXPECT_THAT(refused("slope_along = \"pitch\"", "slope_along = \"speed\""), testing::HasSubstr("speed"));
     EXPECT_THAT(refused("sense = \"maximise\"", "sense = \"maximize\""), testing::HasSubstr("maximise"));
     EXPECT_THAT(refused("name = \"medium\"", "name = \"coarse\""), testing::HasSubstr("two fidelities"));
+    EXPECT_THAT(refused("key = \"body.base_cut\"", "key = \"protrusion.height\""), testing::HasSubstr("varies twice"));
+    EXPECT_THAT(refused("key = \"body.base_cut\"", "key = \"body.base\""),
+                testing::HasSubstr("a choice, not a number"));
+    EXPECT_THAT(refused("key = \"protrusion.length\"\nof = \"protrusion.height\"",
+                        "key = \"body.base_cut\"\nof = \"body.taper\""),
+                testing::HasSubstr("varies by itself"));
+    EXPECT_THAT(refused("name = \"stiffness\"", "name = \"lift\""), testing::HasSubstr("two objectives 'lift'"));
+    EXPECT_THAT(refused("at_least = \"0.1 L\"", "at_least = \"3 L\"\nat_most = \"2 L\""),
+                testing::HasSubstr("no design can meet both"));
+    EXPECT_THAT(refused("[design.volume]",
+                        "[[design.limit]]\nquantity = \"lift_force\"\nat = { gap = \"5 mm\", pitch = 0 }\n"
+                        "at_least = \"3 N\"\nat_most = \"1 N\"\n[design.volume]"),
+                testing::HasSubstr("no design can meet both"));
+    // Beyond what is computed: a place, and a slope that reaches beyond.
+    EXPECT_THAT(refused("at = { gap = \"5 mm\", pitch = 0 }", "at = { gap = \"50 mm\", pitch = 0 }"),
+                testing::HasSubstr("a gap of 50 mm, and [design] computes 3 mm to 10 mm"));
+    EXPECT_THAT(refused("slope_along = \"pitch\"", "slope_along = \"pitch\"\nhalf_width = \"2 deg\""),
+                testing::HasSubstr("0 deg +- 2 deg"));
+}
+
+TEST_F(DesignFiles, TheOnlyValueOfAConditionMayBeSaid) {
+    std::string text = design_toml;
+    text.replace(text.find("[\"3 mm\", \"5 mm\", \"10 mm\"]"), 25, "\"5 mm\"");
+    core::write_file(folder_.path() / "study.toml", text);
+    EXPECT_EQ(open().spec().objectives.front().response.conditions.size(), 1u);  // the pitch
+    text.replace(text.find("gap = \"5 mm\", pitch = 0"), 12, "gap = \"6 mm\"");
+    core::write_file(folder_.path() / "study.toml", text);
+    EXPECT_THROW((void)open(), core::InputError);
+}
+
+TEST_F(DesignFiles, AVolumeThatIsKnownToBeWrongCostsNoRun) {
+    std::string text = design_toml;
+    text.replace(text.find("at_least = \"0.1 L\""), 18, "at_least = \"100 L\"");
+    core::write_file(folder_.path() / "study.toml", text);
+    Design design = open();
+    EXPECT_EQ(design.make_plan(), 16u);
+    const Design planned = open();  // lives as long as the loop
+    for (const PlannedDesign& d : planned.plan()) {
+        EXPECT_THAT(d.state, testing::HasSubstr("design.volume wants at least 100 L"));
+    }
+    const Study study = Study::open(folder_.path());
+    try {
+        open().solve(study, 1);
+        ADD_FAILURE() << "ran";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("there is nothing to run: of 16 designs none can be"));
+    }
+}
+
+TEST_F(DesignFiles, LimitsThatNobodyMeetsAreNamed) {
+    std::string text = design_toml;
+    text = text.substr(0, text.find("[design.volume]")) +
+           "[[design.limit]]\nname = \"much lift\"\nquantity = \"lift_force\"\nat_least = \"9 N\"\n"
+           "at = { gap = \"5 mm\", pitch = 0 }\n"
+           "[[design.limit]]\nname = \"little moment\"\nquantity = \"pitch_moment\"\nat_most = \"1 N m\"\n"
+           "at = { gap = \"5 mm\", pitch = 0 }\n";
+    core::write_file(folder_.path() / "study.toml", text);
+    Design design = open();
+    design.make_plan();
+    compute(design);
+    const Design known = open();
+    const auto surrogates = known.surrogates();
+    const auto search = known.search(surrogates);
+    EXPECT_FALSE(search.optimum(1, 1));
+    const auto alone = tables::limits_alone(search.problem(), surrogates, 1, 1);
+    ASSERT_EQ(alone.size(), 2u);
+    ASSERT_TRUE(alone[0] && alone[1]);
+    EXPECT_FALSE(alone[0]->met);
+    EXPECT_NEAR(alone[0]->nearest.value, lift(3e-3, 0.72, 5e-3, 0), 0.01) << "the most lift that there is";
+    EXPECT_TRUE(alone[1]->met);
 }
 
 TEST_F(DesignFiles, AProtrusionOfNoHeightIsNone) {

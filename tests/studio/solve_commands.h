@@ -25,7 +25,7 @@ protected:
     SolveCommands() {
         // Nothing of OpenFOAM or Slurm that this machine may have is on the path of these tests.
         for (const char* tool : {"sh", "sed", "mkdir", "touch", "printf", "cat", "sleep", "rm", "cp", "tail", "dirname",
-                                 "head", "mv", "date", "ln"}) {
+                                 "head", "mv", "date", "ln", "grep", "seq"}) {
             for (const char* where : {"/usr/bin", "/bin"}) {
                 if (std::filesystem::exists(std::filesystem::path(where) / tool) &&
                     !std::filesystem::exists(folder_.path() / "tools" / tool)) {
@@ -43,6 +43,7 @@ protected:
     }
     [[nodiscard]] std::map<std::string, std::string> environment() const {
         return {{"PATH", (folder_.path() / "bin").string() + ":" + (folder_.path() / "tools").string()},
+                {"UNDERBODY_HUNG_AFTER", "3 s"},  // of processor time: the stand-ins write before that
                 {"HOOK", (folder_.path() / "hook").string()}};
     }
     void hook(const std::string& script) { core::write_file(folder_.path() / "hook", script + "\n"); }

@@ -320,6 +320,47 @@ TEST_F(SolveCommands, ADesignTakesWhatPeopleTypedAndSaysWhenAllFailed) {
                 HasSubstr("nu 1.1e-06"));
 }
 
+/// One design at three gaps, on draft meshes.
+void write_search(const fs::path& study, const fs::path& shape) {
+    core::write_file(study / "evie.toml", core::read_file(shape));
+    core::write_file(study / "study.toml",
+                     "title = \"search\"\n[frame]\nsymmetry = \"y\"\n[design]\nshape = \"evie.toml\"\npoints = 1\n"
+                     "gap = [\"3 mm\", \"5 mm\", \"8 mm\"]\n[[design.vary]]\nkey = \"body.base_cut\"\nfrom = 0.74\n"
+                     "to = 0.76\n[[design.fidelity]]\nname = \"draft\"\niterations = 240\n");
+}
+
+/// At 5 mm the solver does what `fault` says; the plan goes on, the point is kept as failed with a clear word.
+TEST_F(SolveCommands, ADesignKeepsWhatDivergesOrHangsAsFailedAndGoesOn) {
+    program("ln", "exec /bin/ln \"$@\"");
+    write_study();
+    const fs::path study = folder_.path() / "search";
+    struct Fault {
+        std::string solver, state;
+    };
+    const std::string
+        at_5 = "if ! grep -q 'CofR (0 0 0.005)' system/controlDict; then true; else ",
+        rows =
+            "mkdir -p postProcessing/forces/60; for i in $(seq 61 300); do echo \"$i (nan 0 2) (nan 0 2) (0 "
+            "0 0)\"; done > postProcessing/forces/60/force.dat; ";
+    for (const Fault& fault :
+         {Fault{"echo '#1  Foam::sigFpe::sigHandler(int) at ??:?'; kill -FPE $$", "the solution diverged"},
+          Fault{"kill -SEGV $$", "ended itself by signal 11"}, Fault{"while :; do :; done", "hangs and was ended"},
+          Fault{rows + "sleep 1000", "no longer finite: the solution diverged"}}) {
+        SCOPED_TRACE(fault.state);
+        fs::remove_all(study);
+        write_search(study, folder_.path() / "study" / "ellipse.toml");
+        program("simpleFoam", at_5 + fault.solver + "; fi\n" + waiting_solver("0"));
+        const auto ended = run({"design", "run", "search", "--json"});
+        const core::Table table = core::read_csv(study / "design" / "results.csv");
+        ASSERT_EQ(table.rows(), 3u) << ended.errors;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool bad = std::abs(table.numbers("gap")[i] - 5e-3) < 1e-6;
+            EXPECT_EQ(table.text("state")[i].find(fault.state) != std::string::npos, bad) << table.text("state")[i];
+        }
+        EXPECT_TRUE(fs::exists(study / "design/runs/draft/design-001-h5-p0-u0.5.failed")) << "its logs";
+    }
+}
+
 TEST_F(SolveCommands, WhatBelongsToOneMesherIsRefusedWithTheOther) {
     write_study();
     const fs::path toml = folder_.path() / "study" / "study.toml";

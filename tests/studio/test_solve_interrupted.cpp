@@ -12,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/random.h"
+#include "core/table.h"
 #include "tests/studio/solve_commands.h"
 #include "tests/support/support.h"
 
@@ -127,6 +128,46 @@ TEST_F(SolveCommands, KilledSweepsLoseNothingThatWasSolvedAndTheNextOneFinishes)
                 EXPECT_NE(entry.path().extension(), ".unfinished");
             }
         }
+    }
+}
+
+TEST_F(SolveCommands, AKilledDesignRunLosesNoRowAndTheNextOneFinishes) {
+    write_study();
+    const fs::path study = folder_.path() / "search", results = study / "design" / "results.csv";
+    core::write_file(study / "evie.toml", core::read_file(folder_.path() / "study" / "ellipse.toml"));
+    core::write_file(study / "study.toml",
+                     "title = \"search\"\n[frame]\nsymmetry = \"y\"\n[design]\nshape = \"evie.toml\"\npoints = 1\n"
+                     "gap = [\"5 mm\", \"7 mm\", \"10 mm\"]\n[[design.vary]]\nkey = \"body.base_cut\"\nfrom = 0.74\n"
+                     "to = 0.76\n[[design.fidelity]]\nname = \"snappy\"\nmesher = \"snappy\"\niterations = 40\n");
+    hook("sleep 0.002");
+    core::Random random(20261123);
+    const auto rows = [&] {
+        std::map<double, std::string> states;
+        if (fs::exists(results)) {
+            const core::Table table = core::read_csv(results);
+            for (std::size_t i = 0; i < table.rows(); ++i) {
+                EXPECT_TRUE(states.emplace(table.numbers("gap")[i], table.text("state")[i]).second) << "a row twice";
+                EXPECT_NE(table.text("state")[i], "");
+            }
+        }
+        return states;
+    };
+    std::size_t had = 0;
+    for (int i = 0; i < 4; ++i) {
+        const pid_t child = begin({"design", "run", "search"});
+        std::this_thread::sleep_for(
+            std::chrono::microseconds(static_cast<int>(std::exp(random.uniform(std::log(2e4), std::log(1.5e6))))));
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+        const auto now = rows();
+        EXPECT_GE(now.size(), had) << "lost by kill " << i;
+        had = now.size();
+    }
+    (void)run({"design", "run", "search"});  // the stand-in's fields hold no loads: none can be used
+    EXPECT_EQ(rows().size(), 3u);
+    EXPECT_EQ(core::read_csv(study / "design" / "plan.csv").rows(), 1u) << "planned once";
+    for (const char* gap : {"5", "7", "10"}) {
+        EXPECT_TRUE(fs::exists(study / "design/runs/snappy" / ("design-001-h" + std::string(gap) + "-p0-u0.5")));
     }
 }
 
