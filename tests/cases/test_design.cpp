@@ -128,7 +128,7 @@ TEST_F(DesignFiles, APlanIsWrittenOnceAndGoesOn) {
     const PlannedDesign first = open().plan().front();
     EXPECT_NEAR(shape.protrusion->height, first.at[0], 1e-9);
     EXPECT_NEAR(shape.protrusion->length, 12 * first.at[0], 1e-8);  // tied
-    const Design planned = open();  // lives as long as the loop
+    const Design planned = open();                                  // lives as long as the loop
     for (const PlannedDesign& d : planned.plan()) {
         EXPECT_EQ(d.state, "planned") << d.name;
     }
