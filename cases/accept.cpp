@@ -1,10 +1,13 @@
 #include "cases/accept.h"
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "cases/study_text.h"
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/own_files.h"
 #include "core/text.h"
 
@@ -26,9 +29,30 @@ const MeasurementSpec& measurement_named(const Study& study, const std::string& 
                            core::did_you_mean(name, names));
 }
 
-/// The folder of the last report, whose verdict must be the stored one.
-fs::path found_folder(const Study& study, const StudyResults& results, const std::string& measurement,
-                      std::string& sentence) {
+using Files = std::map<std::string, std::string>;  ///< name -> text
+
+/// Of the last report beside the study, whose verdict must be the stored one.
+Files files_in_report(const Study& study, const std::string& measurement, const std::string& sentence) {
+    const fs::path folder = study.folder() / "report" / "discovery" / measurement;
+    const fs::path said = folder / "discovery.json";
+    if (!fs::exists(folder / "model.toml") || !fs::exists(said) ||
+        nlohmann::json::parse(core::read_file(said), nullptr, false).value("sentence", "") != sentence) {
+        throw core::InputError("stale", "the report of the discovery is not there, or of another result",
+                               {said.string(), {}, {}, {}}, "run the study, with its report");
+    }
+    Files files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name == "model.toml" || (entry.path().extension() == ".csv" && name != "next-experiment.csv")) {
+            files[name] = core::read_file(entry.path());
+        }
+    }
+    return files;
+}
+
+/// The model that was found with the tables it names: out of the store, wherever the report lies.
+Files found_files(const Study& study, const StudyResults& results, const std::string& measurement,
+                  std::string& sentence) {
     static_cast<void>(measurement_named(study, measurement));
     const std::string* stored = results.document("discovery/" + measurement);
     if (stored == nullptr) {
@@ -40,12 +64,25 @@ fs::path found_folder(const Study& study, const StudyResults& results, const std
     if (document.value("verdict", "") == "none") {
         throw core::InputError("nothing", "the model of '" + measurement + "' lacks nothing: " + sentence);
     }
-    const fs::path folder = study.folder() / "report" / "discovery" / measurement;
-    const fs::path said = folder / "discovery.json";
-    if (!fs::exists(folder / "model.toml") || !fs::exists(said) ||
-        nlohmann::json::parse(core::read_file(said), nullptr, false).value("sentence", "") != sentence) {
-        throw core::InputError("stale", "the report of the discovery is not there, or of another result",
-                               {said.string(), {}, {}, {}}, "run the study, with its report");
+    if (const std::string* files = results.document("found-model/" + measurement)) {
+        auto all = nlohmann::json::parse(*files).get<Files>();
+        if (all.contains("model.toml")) {
+            return all;
+        }
+    }
+    return files_in_report(study, measurement, sentence);
+}
+
+/// The files in a folder of their own that lasts as long as the program: the same files, the same folder.
+fs::path folder_of(const Files& files) {
+    static const core::TemporaryFolder all;
+    const fs::path folder = all.path() / core::content_hash(nlohmann::json(files).dump());
+    static std::mutex alone;
+    const std::lock_guard<std::mutex> lock(alone);
+    for (const auto& [name, text] : files) {
+        if (!fs::exists(folder / name)) {
+            core::write_file(folder / name, text);
+        }
     }
     return folder;
 }
@@ -58,16 +95,11 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement) {
     Accepted accepted;
-    const fs::path folder = found_folder(study, results, measurement, accepted.sentence);
+    const Files found = found_files(study, results, measurement, accepted.sentence);
     const fs::path to = fs::path("models") / measurement;
     accepted.model = to / "model.toml";
-    for (const auto& entry : fs::directory_iterator(folder)) {
-        const std::string name = entry.path().filename().string();
-        const bool of_the_model =
-            name == "model.toml" || (entry.path().extension() == ".csv" && name != "next-experiment.csv");
-        if (of_the_model) {
-            accepted.files.emplace_back(to / name, core::read_file(entry.path()));
-        }
+    for (const auto& [name, text] : found) {
+        accepted.files.emplace_back(to / name, text);
     }
     const fs::path old = measurement_named(study, measurement).model;
     accepted.study_text = core::read_file(study.folder() / "study.toml");
@@ -99,7 +131,7 @@ void write_accepted(const Study& study, const Accepted& accepted) {
 
 Study with_accepted(const Study& study, const StudyResults& results, const std::string& measurement) {
     std::string sentence;
-    const fs::path found = found_folder(study, results, measurement, sentence) / "model.toml";
+    const fs::path found = folder_of(found_files(study, results, measurement, sentence)) / "model.toml";
     const fs::path old = measurement_named(study, measurement).model;
     Study changed = study;
     for (auto& spec : changed.measurements) {

@@ -18,16 +18,17 @@ struct Accepted {
     std::string sentence;            ///< the verdict
 };
 
-/// What accepting would change; nothing is written. The files are those of the last report of the discovery; the model
-/// becomes that of the measurement and of each [[region]] and [[measurement]] that had the same. Throws
-/// core::UsageError: no such measurement; core::InputError: nothing was discovered of it, or nothing is missing in its
-/// model, or the report is of an older result.
+/// What accepting would change; nothing is written. The files are those of the stored discovery (else of the report
+/// beside the study, which must be of the same result); the model becomes that of the measurement and of each
+/// [[region]] and [[measurement]] that had the same. Throws core::UsageError: no such measurement; core::InputError:
+/// nothing was discovered of it, or nothing is missing in its model, or the report is of an older result.
 Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement);
 
 /// Writes the files and study.toml; the old model stays where it is.
 void write_accepted(const Study& study, const Accepted& accepted);
 
-/// The study with the found model in place, as it is in the report, for looking at what rests on it.
+/// The study with the found model in place, in a folder that lasts as long as the program, for looking at what rests
+/// on it.
 Study with_accepted(const Study& study, const StudyResults& results, const std::string& measurement);
 
 }  // namespace underbody::cases

@@ -286,53 +286,105 @@ std::string text_of(const MeasuredChannel& channel) {
            (channel.unit.empty() ? "" : ":" + channel.unit);
 }
 
-AddedMeasurement with_new_measurement(const fs::path& folder, const NewMeasurement& measurement) {
-    AddedMeasurement added;
-    added.file = folder / "study.toml";
-    const fs::path place = fs::weakly_canonical(fs::absolute(folder));  // ".." leads on from where links end
-    const auto relative = [&](const fs::path& path) {
-        return fs::weakly_canonical(fs::absolute(path)).lexically_relative(place).generic_string();
-    };
-    auto files = measured_files(measurement.data);
-    for (auto& file : files) {
-        file = fs::weakly_canonical(file);
+namespace {
+
+/// Where a measurement stands in a study.
+struct Place {
+    fs::path study;  ///< folder
+    std::vector<fs::path> files;
+    fs::path data;     ///< what study.toml names
+    bool own = false;  ///< a data set that is written for it
+};
+
+/// ".." leads on from where links end.
+Place place_of(const fs::path& folder, const NewMeasurement& measurement) {
+    Place place;
+    place.study = fs::weakly_canonical(fs::absolute(folder));
+    for (const auto& file : measured_files(measurement.data)) {
+        place.files.push_back(fs::weakly_canonical(file));
     }
-    if (files.empty()) {
+    if (place.files.empty()) {
         throw core::InputError("missing", "there are no measurements", {},
                                "a folder with dataset.toml, logs, or tables with time and gap");
     }
+    const fs::path& first = place.files.front();
+    place.data = first.filename() == "dataset.toml" ? first.parent_path() : first;
+    place.own = place.files.size() != 1 || !fs::exists(place.data / "dataset.toml");
+    if (place.own) {
+        place.data = place.study / "measurements" / measurement.name;
+    }
+    return place;
+}
+
+/// The lines of study.toml.
+std::string lines_of(const Place& place, const NewMeasurement& measurement, const fs::path& data) {
+    const auto relative = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(path)).lexically_relative(place.study).generic_string();
+    };
+    return "\n[[measurement]]\nname = " + core::toml_string(measurement.name) +
+           "\nmodel = " + core::toml_string(relative(measurement.model)) +
+           "\ndata = " + core::toml_string(relative(data)) + (measurement.discover ? "\ndiscover = true\n" : "\n");
+}
+
+}  // namespace
+
+AddedMeasurement with_new_measurement(const fs::path& folder, const NewMeasurement& measurement) {
+    AddedMeasurement added;
+    added.file = folder / "study.toml";
+    const Place place = place_of(folder, measurement);
     if (measurement.model.empty()) {
         throw core::InputError("missing", "there is no model to judge the measurements by", {},
                                "a model.toml; `underbody new model` writes one to begin with");
     }
     static_cast<void>(dynamics::read_model(measurement.model));  // says what is wrong with it
-    fs::path data = files.front().filename() == "dataset.toml" ? files.front().parent_path() : files.front();
-    if (files.size() == 1 && fs::exists(data / "dataset.toml")) {
-        added.said = said_of(dynamics::read_measurements(data));
+    if (!place.own) {
+        added.said = said_of(dynamics::read_measurements(place.data));
     } else {
-        added.said = try_data_set(measurement, files);
-        data = place / "measurements" / measurement.name;
-        added.dataset = data / "dataset.toml";
+        added.said = try_data_set(measurement, place.files);
+        added.dataset = place.data / "dataset.toml";
         if (fs::exists(added.dataset)) {
             throw core::InputError("exists", "there is a data set already", {added.dataset.string(), {}, {}, {}},
                                    "take another name");
         }
-        added.dataset_text = dataset_text(measurement, files, data);
+        added.dataset_text = dataset_text(measurement, place.files, place.data);
     }
     const std::string before = core::read_file(added.file);
-    const auto with = [&](const fs::path& of) {
-        return before + "\n[[measurement]]\nname = " + core::toml_string(measurement.name) +
-               "\nmodel = " + core::toml_string(relative(measurement.model)) +
-               "\ndata = " + core::toml_string(relative(of)) + (measurement.discover ? "\ndiscover = true\n" : "\n");
-    };
-    added.text = with(data);
+    added.text = before + lines_of(place, measurement, place.data);
     try {  // a data set that is not written yet is no file that could be named
-        added.study = Study::from_text(with(added.dataset.empty() ? data : files.front()), added.file);
-        added.study.measurements.back().data = data;
+        added.study = Study::from_text(
+            before + lines_of(place, measurement, place.own ? place.files.front() : place.data), added.file);
+        added.study.measurements.back().data = place.data;
     } catch (const core::InputError& error) {
         throw core::InputError(error.kind(), error.message() + "; nothing was written", {}, error.hint());
     }
     return added;
+}
+
+void take_out(const fs::path& folder, const NewMeasurement& measurement) {
+    const fs::path file = folder / "study.toml";
+    const Place place = place_of(folder, measurement);
+    std::string text = core::read_file(file);
+    const std::string lines = lines_of(place, measurement, place.data);
+    const auto at = text.find(lines);
+    if (at == std::string::npos) {
+        throw core::InputError("changed",
+                               "the lines of the measurement '" + measurement.name +
+                                   "' have been changed since they were written, so they stay",
+                               {file.string(), {}, {}, {}}, "take them out by hand");
+    }
+    text.erase(at, lines.size());
+    {
+        const core::ReplacingAllowed of_the_user;  // who asked for it
+        core::write_file(file, text);
+    }
+    const fs::path dataset = place.data / "dataset.toml";
+    if (place.own && fs::exists(dataset) &&
+        core::read_file(dataset) == dataset_text(measurement, place.files, place.data)) {
+        std::error_code not_empty;  // what else was put there stays
+        fs::remove(dataset, not_empty);
+        fs::remove(place.data, not_empty);
+        fs::remove(place.data.parent_path(), not_empty);
+    }
 }
 
 void write_added(const AddedMeasurement& added) {

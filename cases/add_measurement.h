@@ -50,6 +50,11 @@ AddedMeasurement with_new_measurement(const std::filesystem::path& folder, const
 /// Writes the data set, then study.toml.
 void write_added(const AddedMeasurement& added);
 
+/// The other way round: takes out what was written for that measurement, the lines in study.toml and the data set,
+/// which stays where it was changed since. Throws core::InputError: the lines were changed since; nothing is written
+/// then.
+void take_out(const std::filesystem::path& folder, const NewMeasurement& measurement);
+
 /// The data files in what somebody gave: a folder with dataset.toml stays one, of other folders the logs and tables in
 /// them, by content.
 std::vector<std::filesystem::path> measured_files(const std::vector<std::filesystem::path>& given);

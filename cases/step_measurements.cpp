@@ -108,7 +108,11 @@ void run_discovery(Engine& engine, const MeasurementSpec& spec) {
         return;
     }
     const auto packed = nlohmann::json::parse(engine.value(*made));
+    auto model = nlohmann::json::object();  // what accepting it takes, wherever the report lies
     for (const auto& [file, text] : packed.at("files").items()) {
+        if (file == "model.toml" || (fs::path(file).extension() == ".csv" && file != "next-experiment.csv")) {
+            model[file] = text;
+        }
         if (engine.options.write_report && engine.mode == Engine::Mode::compute) {
             Engine::write_if_changed(engine.report_folder() / "discovery" / spec.name / file, text.get<std::string>());
         }
@@ -116,6 +120,7 @@ void run_discovery(Engine& engine, const MeasurementSpec& spec) {
             engine.add_document("discovery/" + spec.name, text.get<std::string>());
         }
     }
+    engine.add_document("found-model/" + spec.name, model.dump());
 }
 
 }  // namespace

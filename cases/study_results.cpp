@@ -90,7 +90,7 @@ void to_json(nlohmann::json& json, const StudyResults& results) {
         }
     }
     for (const auto& [key, text] : results.documents) {
-        if (!key.starts_with("figure/")) {
+        if (!key.starts_with("figure/") && !key.starts_with("found-model/")) {
             json["results"][key] = nlohmann::json::parse(text, nullptr, false);
         }
     }

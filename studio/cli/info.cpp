@@ -80,7 +80,9 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
                      ? ", operating pressure " + short_number(summary.operating_pressure) + " Pa"
                      : ""));
     for (const auto& [key, value] : summary.metadata) {
-        shell.print(key + ": " + value);
+        if (key != "time_values") {  // `times` says it shorter; all of them stand in the JSON
+            shell.print(key + ": " + value);
+        }
     }
 }
 

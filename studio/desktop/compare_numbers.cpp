@@ -148,6 +148,7 @@ double CompareNumbers::value(const ComparedCase& one, const std::string& quantit
 
 void CompareNumbers::fill_forces() {
     forces_->clear();
+    forces_->clearSpans();
     forces_->setRowCount(static_cast<int>(cases_.size()));
     forces_->setColumnCount(static_cast<int>(3 * compared.size()));
     QStringList titles, names;
@@ -182,6 +183,18 @@ void CompareNumbers::fill_forces() {
         }
     }
     forces_->resizeColumnsToContents();
+    for (int column = 2; column < forces_->columnCount(); column += 3) {
+        forces_->setColumnHidden(column, cases_.size() < 2);  // the first less the first
+    }
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+        const int row = static_cast<int>(i);
+        if (!cases_[i].why.empty() && !std::isfinite(value(cases_[i], compared.front().name))) {
+            forces_->setSpan(row, 0, 1, forces_->columnCount());
+            put(*forces_, row, 0, qt(cases_[i].why).simplified());
+            forces_->item(row, 0)->setToolTip(qt(cases_[i].why));
+            forces_->item(row, 0)->setTextAlignment(Qt::AlignLeft | Qt::AlignVCenter);
+        }
+    }
 }
 
 void CompareNumbers::fill_zones() {
@@ -372,13 +385,19 @@ QString CompareNumbers::said_of_tables() const { return tables_said_->text(); }
 std::vector<QStringList> CompareNumbers::rows() const {
     std::vector<QStringList> all(1);
     all.front() << "";
+    std::vector<int> columns;
     for (int column = 0; column < forces_->columnCount(); ++column) {
+        if (!forces_->isColumnHidden(column)) {
+            columns.push_back(column);
+        }
+    }
+    for (const int column : columns) {
         all.front() << forces_->horizontalHeaderItem(column)->text();
     }
     for (int row = 0; row < forces_->rowCount(); ++row) {
         QStringList cells = {forces_->verticalHeaderItem(row)->text()};
-        for (int column = 0; column < forces_->columnCount(); ++column) {
-            cells << forces_->item(row, column)->text();
+        for (const int column : columns) {
+            cells << (forces_->columnSpan(row, 0) > 1 ? QString("–") : forces_->item(row, column)->text());
         }
         all.push_back(cells);
     }

@@ -55,7 +55,7 @@ void DesignPanel::build() {
     if (Scene::possible()) {
         scene_ = std::make_unique<Scene>(this);
         scene_->widget()->setMinimumSize(200, 160);
-        scene_->on_pick = [this](const QString& text) { Q_EMIT remark(text); };
+        scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
         upper->addWidget(scene_->widget());
     } else {
         upper->addWidget(new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer."));

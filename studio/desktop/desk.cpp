@@ -3,8 +3,10 @@
 #include <QTimer>
 #include <set>
 
+#include "cases/add_measurement.h"
 #include "core/file.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/measured.h"
 #include "studio/desktop/state/session_file.h"
 #include "studio/figures/render.h"
 
@@ -91,8 +93,71 @@ void Desk::take_session(const SessionPointer& fresh) {
     Q_EMIT session_changed();
 }
 
+namespace {
+
+using MeasuredRecords = std::map<std::string, MeasuredRecord>;
+
+/// True when something was added.
+bool change_measurements(const fs::path& folder, const MeasuredRecords& before, const MeasuredRecords& after) {
+    const auto same_in = [](const MeasuredRecords& records, const auto& one) {
+        const auto at = records.find(one.first);
+        return at != records.end() && at->second == one.second;
+    };
+    bool added = false;
+    for (const auto& one : before) {
+        if (!same_in(after, one)) {
+            cases::take_out(folder, new_measurement(one.first, one.second));
+        }
+    }
+    for (const auto& one : after) {
+        if (!same_in(before, one)) {
+            cases::write_added(cases::with_new_measurement(folder, new_measurement(one.first, one.second)));
+            added = true;
+        }
+    }
+    return added;
+}
+
+}  // namespace
+
+void Desk::write_measurements() {
+    const State& wanted = state();
+    const auto before = wanted.study == written_in_ ? written_ : wanted.measured;
+    written_in_ = wanted.study;
+    written_ = wanted.measured;
+    if (before == wanted.measured) {
+        return;
+    }
+    jobs_.cancel("run");  // of a study that is another one now
+    jobs_.start("measurements", "writing measurements into the study",
+                [this, folder = fs::path(wanted.study), before,
+                 after = wanted.measured](core::Progress&) -> std::function<void()> {
+                    try {
+                        const bool added = change_measurements(folder, before, after);
+                        return [this, added] {
+                            Q_EMIT noted(added ? "study.toml has the measurement now."
+                                               : "study.toml is without the measurement again.");
+                            reload();
+                            if (added) {
+                                run_study();
+                            }
+                        };
+                    } catch (const core::Error&) {
+                        return [this, before, error = std::current_exception()] {
+                            const std::size_t last = history_.position();
+                            if (last > 0 && history_.steps()[last - 1].line.starts_with("measure ")) {
+                                written_ = before;
+                                undo();  // what cannot be done is not done
+                            }
+                            Q_EMIT refused("writing measurements into the study", error);
+                        };
+                    }
+                });
+}
+
 void Desk::follow_state() {
     const State& wanted = state();
+    write_measurements();
     SessionPointer known;
     for (const auto& one : earlier_) {
         known = one->folder == fs::path(wanted.study) ? one : known;
@@ -225,6 +290,8 @@ void Desk::start_from(const State& state, const QString& what) {
             auto on_line = history_.on_line;
             history_ = History(state);
             history_.on_line = std::move(on_line);
+            written_in_ = state.study;  // a session that was saved changes no study
+            written_ = state.measured;
             take_session(session);
             Q_EMIT changed();
             Q_EMIT opened(qt(state.study));
@@ -275,6 +342,14 @@ void Desk::replay_log(const fs::path& file, const fs::path& start, bool recover)
                 }
             }
             take_session(session);
+            written_in_ = state().study;
+            written_.clear();
+            for (const auto& one : session->study.measurements) {
+                if (const auto known = state().measured.find(one.name); known != state().measured.end()) {
+                    written_.insert(*known);
+                }
+            }
+            write_measurements();
             Q_EMIT changed();
             for (const std::string& line : refused) {
                 Q_EMIT noted("Not done again: " + qt(line));

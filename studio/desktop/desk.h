@@ -67,6 +67,8 @@ private:
     void take_session(const SessionPointer& session);
     /// Gets the session that the state names.
     void follow_state();
+    /// What was taken into the study, or is taken back, is written.
+    void write_measurements();
     void refresh_results();
     void start_from(const State& state, const QString& what);
 
@@ -77,6 +79,8 @@ private:
     std::vector<SessionPointer> earlier_;  ///< of studies that were open: undo goes back without reading
     QTimer* refresh_ = nullptr;
     bool reload_later_ = false;
+    std::string written_in_;                         ///< the study of `written_`
+    std::map<std::string, MeasuredRecord> written_;  ///< measurements as they stand on disk
 };
 
 }  // namespace underbody::studio

@@ -5,6 +5,7 @@
 #include <QImage>
 #include <QLabel>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QSignalBlocker>
 #include <QTextBrowser>
 #include <QUrl>
@@ -34,6 +35,15 @@ QString value(const json& object, const char* key, int digits = 3) {
         return html(at->get<std::string>()).replace("+-", "±");
     }
     return at->is_number() ? html(core::format_number(at->get<double>(), digits)) : html(at->dump());
+}
+
+/// A sentence of the library with its names as words: "coulomb friction".
+QString prose(QString text) {
+    static const QRegularExpression name("\\b[a-z]+(?:_[a-z]+)+\\b");
+    for (auto match = name.match(text); match.hasMatch(); match = name.match(text)) {
+        text.replace(match.capturedStart(), match.capturedLength(), match.captured().replace('_', ' '));
+    }
+    return text;
 }
 
 /// A number in the unit that people read it in: millimetres for what is given in metres.
@@ -84,7 +94,8 @@ QString effect_rows(const json& effects, const char* last_key, const QString& la
         last_title + "</th></tr>";
     for (const auto& effect : effects) {
         text += "<tr><td><b>" + value(effect, "name").replace('_', ' ') + "</b></td><td>" + parameters(effect) +
-                "</td><td align=right>" + probability(effect) + "</td><td>" + value(effect, last_key) + "</td></tr>";
+                "</td><td align=right>" + probability(effect) + "</td><td>" + prose(value(effect, last_key)) +
+                "</td></tr>";
     }
     return text + "</table>";
 }
@@ -125,7 +136,7 @@ QString discovery_page(const std::string& text) {
     } else if (verdict == "unknown") {
         page += "<h2>Something real, but no named effect explains it</h2>";
     }
-    page += "<p>" + value(document, "sentence") + "</p>";
+    page += "<p>" + prose(value(document, "sentence")) + "</p>";
     page += error_line(document.value("error", json()));
     page += effect_rows(document.value("effects", json()), "evidence", "evidence");
     const QString rivals = effect_rows(document.value("alternatives", json()), "told_apart_by", "told apart by");
@@ -136,10 +147,10 @@ QString discovery_page(const std::string& text) {
         for (const auto& name : depends) {
             names += (names.isEmpty() ? "" : ", ") + html(name.is_string() ? name.get<std::string>() : name.dump());
         }
-        page += "<p>The residual depends on " + names + " (found without any named effect).</p>";
+        page += "<p>The residual depends on " + prose(names) + " (found without any named effect).</p>";
     }
     const QString next = value(document, "next_experiment");
-    page += next.isEmpty() ? "" : "<h3>Next experiment</h3><p>" + next + "</p>";
+    page += next.isEmpty() ? "" : "<h3>Next experiment</h3><p>" + prose(next) + "</p>";
     return page;
 }
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/table_rows.h"
 #include "core/text.h"
@@ -22,6 +23,7 @@
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
+#include "surrogates/tables/analysis/figures.h"
 
 namespace underbody::studio {
 
@@ -339,6 +341,14 @@ void ExplorePanel::draw_scatter() {
             points.y.push_back(to_y(y->numbers[row]));
         }
     }
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const auto* points : {&all, &kept}) {
+        for (const double value : points->x) {
+            lowest = std::min(lowest, value);
+            highest = std::max(highest, value);
+        }
+    }
+    figure.x.logarithmic = lowest > 0 && lowest < highest && tables::spans_decades(lowest, highest);
     if (!all.x.empty()) {
         figure.points.push_back(all);
     }

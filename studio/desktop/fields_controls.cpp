@@ -13,25 +13,10 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "postproc/field/lists.h"
-#include "postproc/loads/body_zones.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/qt_text.h"
 
 namespace underbody::studio {
-
-namespace {
-
-/// Zones that are the body: those of the case's patterns, else what may be a wall but not the ground.
-bool is_body(const postproc::Field& field, const postproc::Zone& zone, const std::vector<std::string>& patterns) {
-    if (!patterns.empty()) {
-        return postproc::matches_any(patterns, zone.name);
-    }
-    std::vector<const postproc::Zone*> said_otherwise;
-    const auto walls = postproc::possible_walls(field, said_otherwise);
-    return std::find(walls.begin(), walls.end(), &zone) != walls.end() && !postproc::matches("*ground*", zone.name);
-}
-
-}  // namespace
 
 void FieldsPanel::build_controls(QWidget& side) {
     auto* left = new QVBoxLayout(&side);
@@ -46,16 +31,15 @@ void FieldsPanel::build_controls(QWidget& side) {
         view_->addItem(qt(kind.name).replace('-', ", "), qt(kind.name));
         view_->setItemData(view_->count() - 1, qt(kind.meaning), Qt::ToolTipRole);
     }
+    view_->addItem("gap profile", "profile-gap");
+    view_->setItemData(view_->count() - 1,
+                       "speed over the height between ground and base, at a few stations, of a field with a volume",
+                       Qt::ToolTipRole);
     view_->setToolTip(
         "The surface to turn by hand, or a picture of the flow: planes and streamlines need a file with its volume");
     view_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     left->addWidget(view_);
-    time_ = new QLineEdit;
-    time_->setAccessibleName("Time");
-    time_->setToolTip("Of files with several times (OpenFOAM, EnSight, CGNS): the one that is shown");
-    time_->setClearButtonEnabled(true);
-    left->addWidget(time_);
-    time_->hide();
+    left->addWidget(build_time());
     auto* colour = new QLabel("&Colour by");
     left->addWidget(colour);
     array_ = new QComboBox;
@@ -115,18 +99,29 @@ void FieldsPanel::build_controls(QWidget& side) {
         connect(shortcut, &QShortcut::activated, this, act);
     }
     left->addLayout(views);
+    body_mode_ = new QPushButton("Choose the &body in 3D");
+    body_mode_->setCheckable(true);
+    body_mode_->setToolTip(
+        "All zones are shown, those of the body in orange: a click on one makes it part of the body or takes it out.\n"
+        "The right button on a zone, or on its name above, offers the same at any time.");
+    left->addWidget(body_mode_);
+    connect(body_mode_, &QPushButton::toggled, this, [this] { recolour(); });
+    half_offer_ = new QPushButton;
+    half_offer_->hide();
+    left->addWidget(half_offer_);
+    connect(half_offer_, &QPushButton::clicked, this, &FieldsPanel::take_half);
+    zones_->setContextMenuPolicy(Qt::CustomContextMenu);
+    connect(zones_, &QListWidget::customContextMenuRequested, this, [this](const QPoint& at) {
+        if (const auto* item = zones_->itemAt(at)) {
+            zone_menu(cells_.size(), item->text().toStdString(), zones_->viewport()->mapToGlobal(at));
+        }
+    });
     units_ = new QPushButton("Units, &half model …");
     units_->setToolTip("What a file from outside the study does not say: units, half or whole, zones of the body");
     left->addWidget(units_);
     connect(units_, &QPushButton::clicked, this, &FieldsPanel::ask_units);
     connect(view_, QOverload<int>::of(&QComboBox::activated), this, [this] {
         desk_.act({"fields", "view=" + view_->currentData().toString().toStdString()});
-    });
-    connect(time_, &QLineEdit::editingFinished, this, [this] {
-        if (time_->isModified()) {
-            time_->setModified(false);
-            desk_.act({"fields", "time=" + time_->text().trimmed().toStdString()});
-        }
     });
     const auto on_off = [this](const char* key, bool on) {
         desk_.act({"fields", std::string(key) + (on ? "=on" : "=off")});
@@ -160,12 +155,12 @@ void FieldsPanel::fill_controls() {
         }
         const auto& field = *cell->scene->field();
         // Where no zone looks like a body (an inlet alone, a blade without walls) all are shown.
-        const bool any = std::any_of(field.zones.begin(), field.zones.end(), [&](const auto& zone) {
-            return zone.surface && is_body(field, zone, cell->source.zones);
-        });
-        for (const auto& zone : field.zones) {
+        const auto of_body = body_zones(*cell);
+        const bool any = std::find(of_body.begin(), of_body.end(), true) != of_body.end();
+        for (std::size_t k = 0; k < field.zones.size(); ++k) {
+            const auto& zone = field.zones[k];
             if (zone.surface && zone.surface->GetNumberOfCells() > 0) {
-                const bool body = !any || is_body(field, zone, cell->source.zones);
+                const bool body = !any || of_body[k];
                 const auto typed = state().fields.zones.find(zone.name);
                 auto& entry = zones[zone.name];
                 entry.first = typed != state().fields.zones.end() ? typed->second : entry.first || body;
@@ -203,6 +198,7 @@ void FieldsPanel::fill_controls() {
     view_->setCurrentIndex(std::max(0, view_->findData(qt(state().fields.view))));
     units_->setEnabled(std::any_of(cells_.begin(), cells_.end(),
                                    [](const auto& cell) { return cell->source.id.starts_with("field/"); }));
+    body_mode_->setEnabled(units_->isEnabled());
     fill_time();
     if (!range_->hasFocus()) {
         const auto& range = state().fields.range;
@@ -243,23 +239,6 @@ void FieldsPanel::check_names() {
         }
     }
     checked_ = view;
-}
-
-/// Where a file has several times it can be said which.
-void FieldsPanel::fill_time() {
-    QString times;
-    for (const auto& cell : cells_) {
-        for (const auto& [key, value] :
-             cell->ready ? cell->field->metadata : std::vector<std::pair<std::string, std::string>>{}) {
-            times = key == "times" ? qt(value) : times;
-        }
-    }
-    time_->setVisible(!times.isEmpty() || state().fields.time);
-    time_->setPlaceholderText("time: the last of " + times);
-    if (!time_->hasFocus()) {
-        time_->setText(state().fields.time ? qt(core::format_number(*state().fields.time) + " s") : QString());
-        time_->setModified(false);
-    }
 }
 
 }  // namespace underbody::studio

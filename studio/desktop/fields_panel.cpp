@@ -6,6 +6,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
 #include <QStackedLayout>
@@ -65,6 +66,7 @@ void FieldsPanel::build() {
     halves->setStretchFactor(1, 0);
     halves->setSizes({640, 130});
     right->addWidget(halves, 1);
+    build_probe(*right);
     connect(numbers_, &CompareNumbers::remark, this, &Panel::remark);
 }
 
@@ -82,7 +84,12 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         cell->scene = std::make_unique<Scene>(cell->box);
         cell->scene->widget()->setMinimumSize(120, 100);
         cell->scene->widget()->setVisible(Scene::possible());
-        cell->scene->on_pick = [this](const QString& text) { Q_EMIT remark(text); };
+        const std::size_t index = cells_.size();
+        cell->scene->on_hover = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
+        cell->scene->on_pick = [this, index](const Scene::Picked& found) { picked(index, found); };
+        cell->scene->on_menu = [this, index](const Scene::Picked& found) {
+            zone_menu(index, found.zone, QCursor::pos());
+        };
         cell->scene->on_turn = [this] {
             for (const auto& one : cells_) {
                 if (one->ready && one->box->isVisible()) {
@@ -164,9 +171,10 @@ void FieldsPanel::taken(std::size_t index, const std::shared_ptr<const postproc:
     for (const auto& found : cell.scene->field()->problems) {
         Q_EMIT problem(found);
     }
-    if (first || session().folder.empty()) {
+    if (first || (session().folder.empty() && cell.shown != cell.source.id)) {
         camera_.clear();  // files from outside may be of any size
     }
+    cell.shown = cell.source.id;
     show_numbers();
     recolour();
 }
@@ -198,6 +206,10 @@ void FieldsPanel::recolour() {
         for (const auto& zone : scene.field()->zones) {
             const auto items = zones_->findItems(qt(zone.name), Qt::MatchExactly);
             seen.push_back(!items.isEmpty() && items.front()->checkState() == Qt::Checked);
+            if (const auto typed = state().fields.zones.find(zone.name);
+                body_mode_->isChecked() && typed == state().fields.zones.end()) {
+                seen.back() = true;  // what is chosen from is seen
+            }
         }
         scene.set_visible(seen);
         const auto& zones = scene.field()->zones;
@@ -218,6 +230,7 @@ void FieldsPanel::recolour() {
                 range ? std::array<double, 2>{std::min((*range)[0], (*own)[0]), std::max((*range)[1], (*own)[1])} : own;
         }
     }
+    tint_bodies();
     range = state().fields.range ? state().fields.range : range;
     for (const auto& choice : chosen) {
         unit_ = choice.name.empty() ? unit_ : qt(pretty_unit(choice.unit));
@@ -231,6 +244,8 @@ void FieldsPanel::recolour() {
         }
     }
     check_names();
+    offer_half();
+    show_probe();
     look_from(state().fields.camera);
     for (const auto& cell : cells_) {
         if (cell->ready) {
@@ -278,7 +293,10 @@ Sheet FieldsPanel::sheet() const {
         sheet.title += " (" + unit_ + "), " + range_shown_->text();
     }
     sheet.about = desk_.has_study() ? qt(session().study.title) + ", " : QString();
-    sheet.about += "seen from " + qt(state().fields.camera) + "; colours " +
+    const std::map<std::string, QString> seen = {
+        {"bottom", "from below"}, {"top", "from above"}, {"side", "from the side"}, {"front", "from ahead"}};
+    const auto camera = seen.find(state().fields.camera);
+    sheet.about += "seen " + (camera == seen.end() ? QString("obliquely from below") : camera->second) + "; colours " +
                    (state().fields.range         ? "on a range that was given"
                     : state().fields.whole_range ? "over the whole range"
                                                  : "from the 1st to the 99th hundredth of what is seen") +

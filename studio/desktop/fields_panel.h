@@ -6,11 +6,13 @@
 
 #include "core/inputs.h"
 #include "postproc/field/field.h"
+#include "postproc/loads/half_model.h"
 #include "postproc/loads/loads.h"
 #include "postproc/views/views.h"
 #include "studio/desktop/panel.h"
 #include "studio/desktop/scene.h"
 
+class QBoxLayout;
 class QCheckBox;
 class QComboBox;
 class QGridLayout;
@@ -47,11 +49,18 @@ public:
     [[nodiscard]] QString said(std::size_t cell) const;
     /// Why the file of a cell was not read; empty: it was, or will be.
     [[nodiscard]] QString failed(std::size_t cell) const;
+    /// The values at the place that is probed, a line a cell; empty: none is.
+    [[nodiscard]] QString probed() const;
     /// Where what a file does not say is asked for.
     [[nodiscard]] UnitSheet& unit_sheet();
     [[nodiscard]] Sheet sheet() const;
     [[nodiscard]] QImage picture_to_copy() const override;
     [[nodiscard]] CompareNumbers* numbers() const { return numbers_; }
+    /// Makes a zone of the file in that cell part of the body, or takes it out (an action); in each cell that has such
+    /// a zone where there is no such cell.
+    void mark_zone(std::size_t cell, const std::string& zone, bool body);
+    /// Takes the model that looks like a half one as that (an action); nothing where none does.
+    void take_half();
 
 protected:
     void draw_again(bool session) override;
@@ -64,6 +73,7 @@ private:
         QString title;
         postproc::ReadOptions reading;
         std::string symmetry;
+        std::optional<double> density;
         /// Differs where the file is another one, or is to be read otherwise.
         [[nodiscard]] std::string key() const;
     };
@@ -78,6 +88,8 @@ private:
         std::string no_loads;  ///< why there are none
         Source source;
         core::FileStamp stamp;
+        std::optional<postproc::LikelyHalf> half;  ///< what its boundaries say
+        std::string shown;                         ///< whose surface it is, also while a newer one is read
         bool ready = false;
         QString empty;  ///< why nothing is seen
     };
@@ -94,7 +106,17 @@ private:
     void show_numbers();
     [[nodiscard]] bool dark() const;
     void fill_controls();
+    QWidget* build_time();
+    void build_probe(QBoxLayout& column);
     void fill_time();
+    /// The time that is shown and the one so many after it.
+    void step_time(int by);
+    void show_probe();
+    void offer_half();
+    void tint_bodies();
+    [[nodiscard]] std::vector<bool> body_zones(const Cell& cell) const;
+    void zone_menu(std::size_t cell, const std::string& zone, const QPoint& place);
+    void picked(std::size_t cell, const Scene::Picked& found);
     void check_names();
     void recolour();
     void look_from(const std::string& camera);
@@ -125,7 +147,14 @@ private:
     std::string pictures_of_;  ///< what is drawn as pictures, or being drawn
     UnitSheet* unit_sheet_ = nullptr;
     QComboBox* view_ = nullptr;
-    QLineEdit* time_ = nullptr;
+    QWidget* time_row_ = nullptr;
+    QComboBox* time_ = nullptr;
+    std::vector<double> times_;  ///< of the files that are shown, s
+    QPushButton* body_mode_ = nullptr;
+    QPushButton* half_offer_ = nullptr;
+    QWidget* probe_row_ = nullptr;
+    QLabel* probe_ = nullptr;
+    std::string probe_of_;  ///< what stands there, or is being looked up
     QPushButton* units_ = nullptr;
     CompareNumbers* numbers_ = nullptr;
     QString unit_;  ///< of the colours

@@ -7,10 +7,12 @@
 #include "core/text.h"
 #include "postproc/field/kinematic.h"
 #include "postproc/loads/loads.h"
+#include "postproc/probe/probe.h"
 #include "postproc/views/views.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/fitted_picture.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/figures/render.h"
 
 namespace underbody::studio {
 
@@ -49,6 +51,19 @@ struct ToDraw {
     postproc::ViewOptions options;
 };
 
+/// The speed over the gap's height, as `underbody views --view profile-gap` draws it.
+Drawn gap_profile(const postproc::Field& field, const ToDraw& of, core::Progress& progress) {
+    postproc::GapOptions gap;
+    gap.forward = of.options.forward;
+    gap.up = of.options.up;
+    gap.symmetry = of.options.symmetry;
+    gap.zones = of.options.zones;
+    gap.density = of.density;
+    core::Figure figure = postproc::gap_profile_figure(field, gap, progress);
+    figure.title += ", " + of.options.case_name;
+    return {image_of(render_png(figure, {of.options.width, of.options.height, 1})), qt(figure.caption)};
+}
+
 /// The same picture of each, in one range of colours and one box; a sentence where it is not possible.
 std::vector<Drawn> views_of(const std::vector<ToDraw>& files, const std::string& name, core::Progress& progress) {
     std::vector<std::unique_ptr<postproc::Field>> fields;
@@ -59,6 +74,10 @@ std::vector<Drawn> views_of(const std::vector<ToDraw>& files, const std::string&
         try {
             auto field = postproc::read_field(files[i].file, files[i].reading, progress);
             (void)postproc::bring_to_pascal(field, files[i].density);
+            if (name == "profile-gap") {
+                drawn[i] = gap_profile(field, files[i], progress);
+                continue;
+            }
             const auto names = postproc::possible_views(field, files[i].options);
             if (std::find(names.begin(), names.end(), name) == names.end()) {
                 QStringList allowed;
@@ -226,7 +245,7 @@ void FieldsPanel::draw_views(const std::vector<std::size_t>& cells, const std::s
     std::vector<ToDraw> files;
     for (const std::size_t i : cells) {
         const Cell& cell = *cells_[i];
-        ToDraw one{cell.source.file, cell.source.reading, {}, view_options(cell)};
+        ToDraw one{cell.source.file, cell.source.reading, cell.source.density, view_options(cell)};
         one.options.case_name = cell.source.title.toStdString();
         if (const auto& range = state().fields.range) {
             one.options.ranges = {{name, {(*range)[0], (*range)[1]}}};

@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "postproc/field/import_error.h"
 #include "postproc/field/unstated_units.h"
+#include "postproc/loads/half_model.h"
 #include "postproc/loads/loads.h"
 #include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/fields_panel.h"
@@ -27,23 +28,25 @@ std::string FieldsPanel::Source::key() const {
     for (const auto& zone : zones) {
         text += "\n" + zone;
     }
+    text += "\n" + (density ? core::format_number(*density) : "");
     return text + "\n" + (reading.time ? core::format_number(*reading.time) : "");
 }
 
 FieldsPanel::Source FieldsPanel::source_of(const cases::Case& one) const {
-    Source source{"case/" + one.name, one.file, one.zones, qt(one.name + ": " + one.conditions.label()), {}, {}};
+    Source source{"case/" + one.name, one.file, one.zones, qt(one.name + ": " + one.conditions.label()), {}, {}, {}};
     source.reading = cases::read_options(one);
     source.symmetry = session().study.symmetry;
     return source;
 }
 
 FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) const {
-    Source source{"field/" + file.string(), file, {}, qt(file.filename().string()), {}, {}};
+    Source source{"field/" + file.string(), file, {}, qt(file.filename().string()), {}, {}, {}};
     source.symmetry = session().study.symmetry;
     if (const auto said = state().readings.find(file.string()); said != state().readings.end()) {
         source.reading.length_unit = said->second.length_unit;
         source.reading.units.assign(said->second.units.begin(), said->second.units.end());
         source.zones = said->second.zones;
+        source.density = said->second.density;
         source.symmetry = said->second.symmetry.empty() ? source.symmetry : said->second.symmetry;
     }
     return source;
@@ -123,6 +126,7 @@ postproc::LoadsOptions FieldsPanel::loads_options(const Source& source) const {
         session().folder.empty() ? postproc::LoadsOptions() : cases::loads_options(session().study, outside);
     options.zones = source.zones;
     options.symmetry = source.symmetry;
+    options.references.density = source.density ? source.density : options.references.density;
     return options;
 }
 
@@ -152,8 +156,10 @@ void FieldsPanel::read(std::size_t index) {
                     std::make_shared<const postproc::Field>(postproc::read_field(source.file, reading, progress));
                 const auto prepared = Scene::prepare(field, source.symmetry);
                 const auto sum = sum_of(*field, options, progress);
-                return [this, current, index, field, prepared, sum] {
+                const auto half = postproc::likely_half(*field);
+                return [this, current, index, field, prepared, sum, half] {
                     if (current()) {
+                        cells_[index]->half = half;
                         cells_[index]->loads = sum.loads;
                         cells_[index]->no_loads = sum.why;
                         taken(index, field, prepared);

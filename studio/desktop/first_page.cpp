@@ -74,7 +74,6 @@ void FirstPage::show_recent(const QStringList& folders, const QString& pictures)
         button->setAccessibleName("Open " + all[i]);
         button->setToolButtonStyle(Qt::ToolButtonTextUnderIcon);
         button->setMinimumSize(220, 160);
-        button->setAutoRaise(true);
         button->setEnabled(QFileInfo::exists(all[i] + "/study.toml"));
         connect(button, &QToolButton::clicked, this, [this, folder = all[i]] { Q_EMIT chosen(folder); });
         grid_->addWidget(button, i / 4, i % 4);

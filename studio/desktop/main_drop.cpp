@@ -59,11 +59,6 @@ MeasurementSheet* MainWindow::take_measurements(const std::vector<fs::path>& mea
     }
     auto* sheet = new MeasurementSheet(*desk_, measured, this);
     connect(sheet, &MeasurementSheet::failed, this, &MainWindow::show_failure);
-    connect(sheet, &MeasurementSheet::taken, this, [this](const QString& name, const QString& command) {
-        problems_->note("Took in the measurement '" + name + "'. The same: " + command);
-        desk_->open_and_run(desk_->session().folder,
-                            {{"select", "measurement/" + name.toStdString()}, {"workspace", "loop"}});
-    });
     sheet->show();
     return sheet;
 }

@@ -17,6 +17,8 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/known_things.h"
+#include "studio/desktop/state/measured.h"
 #include "studio/desktop/unit_sheet.h"
 
 namespace underbody::studio {
@@ -319,28 +321,29 @@ void MeasurementSheet::look() {
         });
 }
 
-Words MeasurementSheet::command() const {
-    Words line = {"underbody", "study", "add", desk_.session().folder.string(), "--data"};
+MeasuredRecord MeasurementSheet::record() const {
+    MeasuredRecord record;
+    record.model = action::whole_path(model_->currentText().trimmed().toStdString());
     for (const auto& path : dropped_) {
-        line.push_back(path.string());
+        record.data.push_back(action::whole_path(path));
     }
-    line.insert(line.end(), {"--model", model_->currentText().trimmed().toStdString(), "--name",
-                             name_->text().trimmed().toStdString()});
-    for (const auto& channel : channels()) {
-        line.insert(line.end(), {"--channel", channel});
-    }
-    if (const auto when = clock(); !when.empty()) {
-        line.insert(line.end(), {"--clock", when});
-    }
-    return line;
+    record.channels = channels();
+    record.clock = clock();
+    return record;
 }
 
+Words MeasurementSheet::command() const {
+    return command_of_measurement(desk_.session().folder, name_->text().trimmed().toStdString(), record());
+}
+
+/// The action writes it: here is found whether it can be.
 void MeasurementSheet::accept() {
     try {
         const auto all = wanted();
-        cases::write_added(cases::with_new_measurement(desk_.session().folder, all));
-        Q_EMIT taken(qt(all.name), qt(line_of(command())));
-        QDialog::accept();
+        static_cast<void>(cases::with_new_measurement(desk_.session().folder, all));
+        if (desk_.act(words_of_measurement(all.name, record()))) {
+            QDialog::accept();
+        }
     } catch (...) {
         Q_EMIT failed("taking measurements in", std::current_exception());
     }

@@ -41,7 +41,6 @@ public Q_SLOTS:
     void accept() override;
 
 Q_SIGNALS:
-    void taken(const QString& measurement, const QString& command);
     void failed(const QString& what, std::exception_ptr error);
 
 private:
@@ -49,6 +48,7 @@ private:
         QComboBox* field = nullptr;
         QComboBox* unit = nullptr;
     };
+    [[nodiscard]] MeasuredRecord record() const;
     void build();
     void build_head(QFormLayout& form);
     void build_rows(QGridLayout& grid);

@@ -6,6 +6,7 @@
 #include <QClipboard>
 #include <QHeaderView>
 #include <QLabel>
+#include <QRegularExpression>
 #include <QStyle>
 #include <QTime>
 #include <QToolButton>
@@ -15,6 +16,17 @@
 namespace underbody::studio {
 
 namespace {
+
+constexpr int whole_text = Qt::UserRole + 1;  ///< of a column that shows less of it
+
+/// The name of a file without its folders, with what stands behind it: "lift.csv:3:2".
+QString without_folders(const QString& place) { return place.section('/', -1); }
+
+/// A file of a temporary folder means nothing to anybody by its folder.
+QString without_temporary_folders(QString text) {
+    const QString temporary = QString::fromStdString(std::filesystem::temp_directory_path().string());
+    return text.replace(QRegularExpression(QRegularExpression::escape(temporary) + "/(?:[^\\s/'\"]+/)+"), "");
+}
 
 /// Tables of a study's model stand in a folder of their own each time that it is read.
 bool same_place(const QString& a, const QString& b) {
@@ -53,10 +65,11 @@ void ProblemList::add(const core::Problem& problem, const QString& hint) {
     using Severity = core::Problem::Severity;
     // What is found again each time something is drawn stands there once, with the time of the last.
     const QString place = QString::fromStdString(problem.place.text());
+    const QString message = QString::fromStdString(problem.message);
     for (int i = topLevelItemCount() - 1; i >= std::max(0, topLevelItemCount() - 200); --i) {
         QTreeWidgetItem* known = topLevelItem(i);
-        if (problem.severity != Severity::note && same_place(known->text(2), place) &&
-            known->text(1) == QString::fromStdString(problem.message)) {
+        if (problem.severity != Severity::note && same_place(known->data(2, whole_text).toString(), place) &&
+            known->data(1, whole_text).toString() == message) {
             known->setText(0, QTime::currentTime().toString("HH:mm:ss"));
             return;
         }
@@ -71,11 +84,13 @@ void ProblemList::add(const core::Problem& problem, const QString& hint) {
                                                               : QStyle::SP_MessageBoxInformation;
     item->setIcon(0, style()->standardIcon(icon));
     item->setText(0, QTime::currentTime().toString("HH:mm:ss"));
-    item->setText(1, QString::fromStdString(problem.message));
-    item->setText(2, place);
-    item->setText(3, hint);
+    item->setText(1, without_temporary_folders(message));
+    item->setText(2, without_folders(place));
+    item->setText(3, without_temporary_folders(hint));
+    const QStringList whole = {message, place, hint};
     for (int column = 1; column < 4; ++column) {
-        item->setToolTip(column, item->text(column));
+        item->setData(column, whole_text, whole[column - 1]);
+        item->setToolTip(column, whole[column - 1]);
     }
     item->setData(0, Qt::UserRole, static_cast<int>(problem.severity));
     scrollToItem(item);
@@ -90,7 +105,11 @@ QString ProblemList::text() const {
     QString result;
     for (int i = 0; i < topLevelItemCount(); ++i) {
         const QTreeWidgetItem* item = topLevelItem(i);
-        result += item->text(0) + "\t" + item->text(1) + "\t" + item->text(2) + "\t" + item->text(3) + "\n";
+        result += item->text(0);
+        for (int column = 1; column < 4; ++column) {
+            result += "\t" + item->data(column, whole_text).toString();
+        }
+        result += "\n";
     }
     return result;
 }

@@ -316,10 +316,24 @@ dynamics::Model RegionPanel::changed_model() const {
     return model.resolved();
 }
 
+std::vector<core::NamedRange> RegionPanel::axes() const {
+    return settings().axes.empty() ? cases::region_options(spec_).axes : core::parse_ranges(settings().axes);
+}
+
+/// Over a logarithmic gap the cells are of equal ratio: of equal width they would be steps at small gaps.
+bool RegionPanel::by_ratio() const {
+    for (const auto& axis : axes()) {
+        if (axis.name == "gap" && axis.lower > 0) {
+            return settings().logarithmic.value_or(tables::spans_decades(axis.lower, axis.upper));
+        }
+    }
+    return false;
+}
+
 std::string RegionPanel::map_key() const {
     const RegionView& view = settings();
     std::string key = spec_.name + " " + std::to_string(view.cells) + " " + core::format_number(duration()) + " " +
-                      view.show + " " + view.axes;
+                      view.show + " " + view.axes + (by_ratio() ? " by ratio" : "");
     key += view.show == "sweep"         ? " " + view.sweep + " " + std::to_string(view.steps)
            : view.show == "probability" ? " " + std::to_string(view.draws)
            : view.show == "estimator"

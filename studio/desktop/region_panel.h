@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "core/units.h"
 #include "studio/desktop/panel.h"
 
 class QCheckBox;
@@ -83,6 +84,8 @@ private:
     /// The model with what the state changes.
     [[nodiscard]] dynamics::Model changed_model() const;
     /// What the map, and what the motion was computed of: another one, another computation.
+    [[nodiscard]] std::vector<core::NamedRange> axes() const;
+    [[nodiscard]] bool by_ratio() const;
     [[nodiscard]] std::string map_key() const;
     [[nodiscard]] std::string motion_key() const;
 
@@ -95,7 +98,6 @@ private:
     std::shared_ptr<const KnownAlongGap> known_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
     std::string map_of_, motion_of_;
-    std::optional<bool> drawn_logarithmic_;  ///< what was asked of the map that is drawn
     QComboBox* choice_ = nullptr;
     QSpinBox* cells_ = nullptr;
     NumberEdit* duration_ = nullptr;

@@ -53,7 +53,7 @@ QString summary(const dynamics::StabilityRegion& region) {
                     .arg(map_number(100 * region.outside_fraction, 3));
     }
     if (region.path_outside_fraction > 0) {
-        text += QString("<p>%1 % of the motions are at some time outside that range.</p>")
+        text += QString("<p>%1 % of the motions are at some time outside the range of the force tables.</p>")
                     .arg(map_number(100 * region.path_outside_fraction, 3));
     }
     return text;
@@ -87,12 +87,8 @@ void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, cons
 
 void RegionPanel::compute() {
     if (map_of_ == map_key()) {
-        if (region_ && settings().logarithmic != drawn_logarithmic_) {  // the same map on another scale
-            show_region();
-        } else if (known_) {
+        if (known_) {  // the same map, perhaps on another scale
             show_known();
-        } else if (probability_ && settings().logarithmic != drawn_logarithmic_) {
-            show_map(dynamics::probability_figure(*probability_));
         }
         return;
     }
@@ -105,9 +101,8 @@ void RegionPanel::compute() {
     motion_of_.clear();
     about_->clear();
     dynamics::RegionOptions options = cases::region_options(spec_);
-    if (!settings().axes.empty()) {
-        options.axes = core::parse_ranges(settings().axes);
-    }
+    options.axes = axes();
+    options.gap_by_ratio = by_ratio();
     options.columns = options.rows = static_cast<std::size_t>(settings().cells);
     options.duration = duration();
     motion_->show_text("Click a start in a map of where starts end to see its motion");
@@ -183,6 +178,7 @@ void RegionPanel::compute_sweep(const dynamics::RegionOptions& wanted) {
     }
     dynamics::RegionOptions options = wanted;
     options.columns = options.rows = std::min<std::size_t>(wanted.rows, 120);
+    options.gap_by_ratio = false;  // shares of the area are drawn, not the maps
     const core::NamedRange range = core::parse_ranges(settings().sweep).front();
     map_->show_text("…");
     jobs_.start(
@@ -295,12 +291,15 @@ void RegionPanel::show_region() {
 }
 
 void RegionPanel::show_map(core::Figure figure) {
-    drawn_logarithmic_ = settings().logarithmic;
-    const core::FigureAxis& x = figure.x;
-    const bool can = x.label == "gap" && x.lower > 0 && x.upper > x.lower;
+    bool can = false, is = false;
+    for (core::FigureAxis* axis : {&figure.x, &figure.y}) {
+        if (axis->label == "gap" && axis->lower > 0 && axis->upper > axis->lower) {
+            can = true;
+            is = axis->logarithmic = settings().logarithmic.value_or(tables::spans_decades(axis->lower, axis->upper));
+        }
+    }
     logarithmic_->setEnabled(can);
-    figure.x.logarithmic = can && settings().logarithmic.value_or(tables::spans_decades(x.lower, x.upper));
-    logarithmic_->setChecked(figure.x.logarithmic);
+    logarithmic_->setChecked(is);
     map_->show_figure(figure, true);
 }
 

@@ -22,6 +22,8 @@
 #include <vtkRenderer.h>
 #include <vtkReverseSense.h>
 #include <vtkScalarBarActor.h>
+#include <vtkSphereSource.h>
+#include <vtkStaticCellLocator.h>
 #include <vtkTextProperty.h>
 #include <vtkTransform.h>
 #include <vtkTransformPolyDataFilter.h>
@@ -30,11 +32,13 @@
 #include <QImage>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
+#include <QTimer>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "studio/desktop/scene_parts.h"
 #include "studio/figures/colour_scale.h"
 #include "studio/figures/render.h"
 
@@ -57,63 +61,7 @@ bool Scene::possible() {
     return yes;
 }
 
-struct Scene::Parts {
-    QVTKOpenGLNativeWidget* widget = nullptr;
-    vtkNew<vtkGenericOpenGLRenderWindow> window;
-    vtkNew<vtkRenderer> renderer;
-    vtkNew<vtkScalarBarActor> bar;
-    vtkNew<vtkLookupTable> colours;
-    vtkNew<vtkAxesActor> axes;
-    vtkNew<vtkOrientationMarkerWidget> marker;
-    vtkNew<vtkCellPicker> picker;
-    vtkNew<vtkCallbackCommand> on_press;
-    std::shared_ptr<const postproc::Field> field;
-    struct Surface {
-        std::size_t zone = 0;
-        vtkSmartPointer<vtkPolyDataMapper> mapper;
-        vtkSmartPointer<vtkActor> actor;
-        vtkSmartPointer<vtkPolyDataMapper> mirrored_mapper;
-        vtkSmartPointer<vtkActor> mirrored;
-    };
-    std::vector<Surface> surfaces;
-    std::vector<bool> seen;
-    Choice choice;
-    bool mirrored = false;
-    std::string mirror;  ///< axis of the prepared mirror
-    std::function<void(const QString&)>* picked = nullptr;
-    std::function<void()>* turned = nullptr;
-    vtkNew<vtkCallbackCommand> on_turn;
-
-    void pick();
-    [[nodiscard]] const postproc::ArrayInfo* info(const Surface& surface) const {
-        return field->zones[surface.zone].find(choice.name);
-    }
-};
-
 namespace {
-
-/// The numbers of an array's chosen component (the size of a vector for -1).
-double value_of(vtkDataArray& array, vtkIdType at, int component) {
-    if (component >= 0) {
-        return array.GetComponent(at, component);
-    }
-    if (array.GetNumberOfComponents() == 1) {
-        return array.GetComponent(at, 0);
-    }
-    double sum = 0;
-    for (int c = 0; c < array.GetNumberOfComponents(); ++c) {
-        sum += array.GetComponent(at, c) * array.GetComponent(at, c);
-    }
-    return std::sqrt(sum);
-}
-
-vtkDataArray* array_of(const postproc::Zone& zone, const postproc::ArrayInfo& info) {
-    if (!zone.surface) {
-        return nullptr;
-    }
-    return info.on == Location::nodes ? zone.surface->GetPointData()->GetArray(info.name.c_str())
-                                      : zone.surface->GetCellData()->GetArray(info.name.c_str());
-}
 
 std::array<double, 3> direction(const std::string& axis, std::array<double, 3> fallback) {
     if (axis.size() != 2 || axis[1] < 'x' || axis[1] > 'z') {
@@ -142,10 +90,15 @@ vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
     return mapper;
 }
 
-/// The surface seen in a mirror through the origin, its faces turned so that they still look outward.
-vtkSmartPointer<vtkPolyData> in_mirror(vtkPolyData* surface, const std::string& axis) {
+/// The surface seen in a mirror (through the origin where no place was stated), its faces turned so that they still
+/// look outward.
+vtkSmartPointer<vtkPolyData> in_mirror(vtkPolyData* surface, const postproc::MirrorPlane& mirror) {
+    std::array<double, 3> size = {1, 1, 1}, shift = {0, 0, 0};
+    size[static_cast<std::size_t>(mirror.axis)] = -1;
+    shift[static_cast<std::size_t>(mirror.axis)] = 2 * mirror.at.value_or(0);
     vtkNew<vtkTransform> transform;
-    transform->Scale(axis == "x" ? -1 : 1, axis == "y" ? -1 : 1, axis == "z" ? -1 : 1);
+    transform->Translate(shift.data());
+    transform->Scale(size.data());
     vtkNew<vtkTransformPolyDataFilter> filter;
     filter->SetInputData(surface);
     filter->SetTransform(transform);
@@ -206,26 +159,52 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.marker->SetViewport(0, 0, 0.16, 0.2);
     p.marker->SetEnabled(1);
     p.marker->InteractiveOff();
-    p.picked = &on_pick;
+    p.scene = this;
     p.picker->SetTolerance(0.0005);
+    p.picker->PickFromListOn();
     p.on_press->SetClientData(&p);
-    p.on_press->SetCallback([](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->pick(); });
-    p.window->GetInteractor()->AddObserver(vtkCommand::LeftButtonPressEvent, p.on_press);
-    p.turned = &on_turn;
+    p.on_press->SetCallback(
+        [](vtkObject*, unsigned long event, void* data, void*) { static_cast<Parts*>(data)->press(event); });
+    for (const auto event : {vtkCommand::LeftButtonPressEvent, vtkCommand::LeftButtonReleaseEvent,
+                             vtkCommand::RightButtonPressEvent, vtkCommand::RightButtonReleaseEvent}) {
+        p.window->GetInteractor()->AddObserver(event, p.on_press, 10.0F);  // before the style takes it
+    }
+    p.on_move->SetClientData(&p);
+    p.on_move->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+        auto& parts = *static_cast<Parts*>(data);
+        if (!parts.button && parts.scene->on_hover && !parts.hover.isActive()) {
+            parts.hover.start();
+        }
+    });
+    p.window->GetInteractor()->AddObserver(vtkCommand::MouseMoveEvent, p.on_move);
+    p.hover.setSingleShot(true);
+    p.hover.setInterval(40);
+    QObject::connect(&p.hover, &QTimer::timeout, [&p] { p.hover_now(); });
     p.on_turn->SetClientData(&p);
     p.on_turn->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
-        const auto& turned = *static_cast<Parts*>(data)->turned;
+        const auto& turned = static_cast<Parts*>(data)->scene->on_turn;
         if (turned) {
             turned();
         }
     });
+    vtkNew<vtkPolyDataMapper> dot_mapper;
+    dot_mapper->SetInputConnection(p.dot->GetOutputPort());
+    p.dot->SetThetaResolution(16);
+    p.dot->SetPhiResolution(16);
+    p.dot_actor->SetMapper(dot_mapper);
+    p.dot_actor->GetProperty()->SetColor(0.9, 0.1, 0.6);
+    p.dot_actor->SetUseBounds(false);
+    p.dot_actor->SetVisibility(false);
+    p.renderer->AddActor(p.dot_actor);
     style->AddObserver(vtkCommand::InteractionEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelForwardEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelBackwardEvent, p.on_turn);
 }
 
 Scene::~Scene() {
+    parts_->hover.stop();
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_press);
+    parts_->window->GetInteractor()->RemoveObserver(parts_->on_move);
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
 }
 
@@ -235,10 +214,11 @@ const postproc::Field* Scene::field() const { return parts_->field.get(); }
 
 struct Scene::Prepared {
     std::shared_ptr<const postproc::Field> field;
-    std::string mirror;
+    postproc::MirrorPlane mirror;
     struct Surface {
         std::size_t zone = 0;
         vtkSmartPointer<vtkPolyData> surface, mirrored;
+        vtkSmartPointer<vtkStaticCellLocator> locator;  ///< of many faces: a click need not go through all
     };
     std::vector<Surface> surfaces;
 };
@@ -247,7 +227,7 @@ std::shared_ptr<const Scene::Prepared> Scene::prepare(std::shared_ptr<const post
                                                       const std::string& mirror) {
     auto prepared = std::make_shared<Prepared>();
     prepared->field = std::move(field);
-    prepared->mirror = mirror;
+    prepared->mirror = postproc::mirror_plane_from(mirror);
     for (std::size_t i = 0; i < prepared->field->zones.size(); ++i) {
         const auto& zone = prepared->field->zones[i];
         if (!zone.surface || zone.surface->GetNumberOfCells() == 0) {
@@ -262,7 +242,12 @@ std::shared_ptr<const Scene::Prepared> Scene::prepare(std::shared_ptr<const post
         Prepared::Surface surface;
         surface.zone = i;
         surface.surface = normals->GetOutput();
-        surface.mirrored = mirror.empty() ? nullptr : in_mirror(surface.surface, mirror);
+        surface.mirrored = prepared->mirror.is_half() ? in_mirror(surface.surface, prepared->mirror) : nullptr;
+        if (surface.surface->GetNumberOfCells() > 50000) {
+            surface.locator = vtkSmartPointer<vtkStaticCellLocator>::New();
+            surface.locator->SetDataSet(surface.surface);
+            surface.locator->BuildLocator();
+        }
         prepared->surfaces.push_back(std::move(surface));
     }
     return prepared;
@@ -275,6 +260,9 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
         p.renderer->RemoveActor(surface.mirrored);
     }
     p.surfaces.clear();
+    p.picker->RemoveAllLocators();
+    p.picker->InitializePickList();
+    p.tinted.clear();
     p.field = prepared->field;
     p.mirror = prepared->mirror;
     p.seen.assign(p.field->zones.size(), true);
@@ -298,6 +286,12 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
         surface.mirrored->SetVisibility(false);
         p.renderer->AddActor(surface.actor);
         p.renderer->AddActor(surface.mirrored);
+        p.picker->AddPickList(surface.actor);
+        if (ready.locator) {
+            p.picker->AddLocator(ready.locator);
+        } else {
+            p.picker->AddPickList(surface.mirrored);  // a mirrored side of many faces has no locator: it is not asked
+        }
         p.surfaces.push_back(std::move(surface));
     }
     mirror(p.mirrored);
@@ -311,7 +305,7 @@ void Scene::set_visible(const std::vector<bool>& zones) {
     for (const auto& surface : parts_->surfaces) {
         const bool seen = surface.zone < zones.size() && zones[surface.zone];
         surface.actor->SetVisibility(seen);
-        surface.mirrored->SetVisibility(seen && parts_->mirrored && !parts_->mirror.empty());
+        surface.mirrored->SetVisibility(seen && parts_->mirrored && parts_->mirror.is_half());
     }
 }
 
@@ -385,9 +379,9 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
         const auto* info = choice.name.empty() ? nullptr : p.info(surface);
         vtkDataArray* array = info != nullptr ? array_of(p.field->zones[surface.zone], *info) : nullptr;
         // The component along the mirror has the other sign behind it: better plain than wrong.
-        const bool across = choice.component >= 0 && p.mirror == std::string(1, "xyz"[choice.component]);
-        surface.mapper->SetScalarVisibility(array != nullptr);
-        surface.mirrored_mapper->SetScalarVisibility(array != nullptr && !across);
+        const bool across = choice.component >= 0 && p.mirror.axis == choice.component;
+        surface.mapper->SetScalarVisibility(array != nullptr && p.tinted.empty());
+        surface.mirrored_mapper->SetScalarVisibility(array != nullptr && !across && p.tinted.empty());
         if (array == nullptr) {
             continue;
         }
@@ -422,9 +416,13 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     }
     // In a small view the full title would be cut: the name stands beside the views.
     const bool small = p.widget->width() < 520 || p.widget->height() < 260;
-    p.bar->SetTitle((small ? pretty_unit(choice.unit) : axis_title(choice.label, choice.unit)).c_str());
+    std::string title = small ? pretty_unit(choice.unit) : axis_title(choice.label, choice.unit);
+    if (title.size() > 14) {  // beside the bar there is room for a word
+        std::replace(title.begin(), title.end(), ' ', '\n');
+    }
+    p.bar->SetTitle(title.c_str());
     p.bar->SetNumberOfLabels(small ? 3 : 6);
-    p.bar->SetVisibility(any);
+    p.bar->SetVisibility(any && p.tinted.empty());
 }
 
 void Scene::show_edges(bool edges) {
@@ -438,7 +436,7 @@ void Scene::show_edges(bool edges) {
 void Scene::mirror(bool on) {
     parts_->mirrored = on;
     for (auto& surface : parts_->surfaces) {
-        surface.mirrored->SetVisibility(on && !parts_->mirror.empty() && visible(surface.zone));
+        surface.mirrored->SetVisibility(on && parts_->mirror.is_half() && visible(surface.zone));
     }
 }
 
@@ -498,37 +496,6 @@ void Scene::look_from(const std::string& view, const std::string& forward, const
     }
     camera->Zoom(view == "iso" ? 1.2 : 1.15);
     camera->SetWindowCenter(0.1, 0);  // room for the colour bar on the right
-}
-
-void Scene::Parts::pick() {
-    int* at = window->GetInteractor()->GetEventPosition();
-    if (!field || picked == nullptr || !*picked || picker->Pick(at[0], at[1], 0, renderer) == 0) {
-        return;
-    }
-    for (const auto& surface : surfaces) {
-        if (picker->GetActor() != surface.actor && picker->GetActor() != surface.mirrored) {
-            continue;
-        }
-        const auto& zone = field->zones[surface.zone];
-        double where[3];
-        picker->GetPickPosition(where);
-        QString text = QString("%1: x %2, y %3, z %4 mm").arg(QString::fromStdString(zone.name));
-        for (const double coordinate : where) {
-            text = text.arg(1000 * coordinate, 0, 'f', 2);
-        }
-        const auto* array_info = info(surface);
-        vtkDataArray* array = array_info != nullptr ? array_of(zone, *array_info) : nullptr;
-        const vtkIdType index =
-            array_info != nullptr && array_info->on == Location::nodes ? picker->GetPointId() : picker->GetCellId();
-        if (array != nullptr && index >= 0 && index < array->GetNumberOfTuples()) {
-            text += QString("  ·  %1 %2 %3")
-                        .arg(QString::fromStdString(choice.label))
-                        .arg(value_of(*array, index, choice.component), 0, 'g', 5)
-                        .arg(QString::fromStdString(pretty_unit(choice.unit)));
-        }
-        (*picked)(text);
-        return;
-    }
 }
 
 void Scene::render() {

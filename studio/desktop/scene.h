@@ -28,7 +28,7 @@ public:
 
     /// A field made ready for drawing: normals and, for half models, the mirrored side. Made in a job.
     struct Prepared;
-    /// `mirror`: "x", "y", "z": the plane through the origin normal to it; empty: none. Safe from any thread.
+    /// `mirror`: as LoadsOptions::symmetry ("y", "y=0.1"); empty: none. Safe from any thread.
     static std::shared_ptr<const Prepared> prepare(std::shared_ptr<const postproc::Field> field,
                                                    const std::string& mirror);
 
@@ -70,8 +70,22 @@ public:
     /// Of what is drawn (x from, to, y, z), empty when that is nothing.
     [[nodiscard]] std::optional<std::array<double, 6>> bounds() const;
 
-    /// Called with the value under the mouse at a click.
-    std::function<void(const QString&)> on_pick;
+    /// What is under the mouse.
+    struct Picked {
+        std::string zone;
+        std::array<double, 3> at{};  ///< m, file axes; of a mirrored side the place on the side that was read
+        QString text;                ///< zone, place and value, for people
+    };
+    /// Called at a click (not at the end of a turn), and while the mouse rests or moves with no button held.
+    std::function<void(const Picked&)> on_pick, on_hover;
+    /// Called for a click with the right button.
+    std::function<void(const Picked&)> on_menu;
+    /// What is under a place of the widget, in its pixels; nothing beside the surfaces.
+    [[nodiscard]] std::optional<Picked> pick(const QPoint& place) const;
+    /// A dot at a place; empty: none.
+    void mark(const std::optional<std::array<double, 3>>& at);
+    /// Plain colours instead of an array: zones of the body and the others; empty: as they were.
+    void tint(const std::vector<bool>& body);
     /// Called while the view is turned by hand, so that those with the same camera follow.
     std::function<void()> on_turn;
 

@@ -9,6 +9,7 @@
 #include <QPushButton>
 #include <algorithm>
 
+#include "core/text.h"
 #include "core/units.h"
 #include "studio/desktop/qt_text.h"
 
@@ -63,6 +64,12 @@ UnitSheet::UnitSheet(Desk& desk, QWidget* parent) : QDialog(parent), desk_(desk)
     zones_->setAccessibleName("Zones of the body");
     zones_->setPlaceholderText("all walls; or names with commas, * and ?: hull*,base");
     more->addRow("Its zones", zones_);
+    density_ = new QLineEdit;
+    density_->setAccessibleName("Density");
+    density_->setPlaceholderText("as the study or the file says; or 998 kg/m^3");
+    density_->setToolTip("Of the water; needed for files that hold pressure over density (OpenFOAM)");
+    connect(density_, &QLineEdit::textChanged, this, &UnitSheet::follow);
+    more->addRow("Density", density_);
     column->addLayout(more);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
     take_ = buttons->addButton("&Read it so", QDialogButtonBox::AcceptRole);
@@ -115,7 +122,11 @@ void UnitSheet::lay_out() {
                                     : unit != reading.units.end() ? qt(unit->second)
                                                                   : QString());
     }
-    half_->setCurrentIndex(std::max(0, half_->findData(qt(reading.symmetry))));
+    if (half_->findData(qt(reading.symmetry)) < 0) {
+        half_->addItem("half, its plane at " + qt(reading.symmetry), qt(reading.symmetry));
+    }
+    half_->setCurrentIndex(half_->findData(qt(reading.symmetry)));
+    density_->setText(reading.density ? qt(core::format_number(*reading.density) + " kg/m^3") : QString());
     QStringList zones;
     for (const auto& zone : reading.zones) {
         zones << qt(zone);
@@ -138,6 +149,15 @@ Words UnitSheet::words() const {
         }
         words.push_back((units_[i].variable.empty() ? "length_unit" : "unit." + units_[i].variable) + "=" + unit);
     }
+    const std::string density = density_->text().trimmed().toStdString();
+    if (!density.empty()) {
+        try {
+            static_cast<void>(core::parse_in(density, "kg/m^3"));
+        } catch (const core::Error&) {
+            return {};
+        }
+    }
+    words.push_back("density=" + density);
     words.push_back("symmetry=" + half_->currentData().toString().toStdString());
     words.push_back("zones=" + zones_->text().trimmed().toStdString());
     return words;

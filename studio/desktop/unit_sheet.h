@@ -47,6 +47,7 @@ private:
     QLabel* about_ = nullptr;
     QComboBox* half_ = nullptr;
     QLineEdit* zones_ = nullptr;
+    QLineEdit* density_ = nullptr;
     QPushButton* take_ = nullptr;
 };
 

@@ -192,8 +192,8 @@ private:
     }
 
     void add_classes(const core::FigureClasses& classes) {
-        new Element(
-            plot_, [grid = class_image(classes)](QCPPainter& p, QCPAxis& x, QCPAxis& y) { paint_grid(p, x, y, grid); });
+        new Element(plot_, [grid = class_image(classes, figure_.x.logarithmic, figure_.y.logarithmic)](
+                               QCPPainter& p, QCPAxis& x, QCPAxis& y) { paint_grid(p, x, y, grid); });
         for (std::size_t i = 0; i < classes.names.size(); ++i) {
             const QColor colour = to_qt(i < classes.colours.size() ? classes.colours[i] : core::palette(i));
             swatch(classes.names[i], colour, QColor(110, 110, 110));

@@ -130,8 +130,14 @@ void paint_band(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::FigureB
     }
 }
 
-GridImage class_image(const core::FigureClasses& classes) {
-    GridImage grid{{}, classes.x_lower, classes.x_upper, classes.y_lower, classes.y_upper, false, false};
+GridImage class_image(const core::FigureClasses& classes, bool x_logarithmic, bool y_logarithmic) {
+    GridImage grid{{},
+                   classes.x_lower,
+                   classes.x_upper,
+                   classes.y_lower,
+                   classes.y_upper,
+                   x_logarithmic && classes.x_lower > 0,
+                   y_logarithmic && classes.y_lower > 0};
     if (classes.columns == 0 || classes.rows == 0 || classes.index.size() < classes.columns * classes.rows) {
         return grid;
     }

@@ -66,7 +66,8 @@ struct GridImage {
     double x_lower = 0, x_upper = 0, y_lower = 0, y_upper = 0;
     bool x_by_ratio = false, y_by_ratio = false;
 };
-GridImage class_image(const core::FigureClasses& classes);
+/// Cells are of equal width on the axes as they are drawn: of equal ratio on logarithmic ones.
+GridImage class_image(const core::FigureClasses& classes, bool x_logarithmic, bool y_logarithmic);
 /// `lower`, `upper`: the colour range in use.
 GridImage map_image(const core::FigureMap& map, double lower, double upper);
 void paint_grid(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const GridImage& grid);

@@ -8,6 +8,7 @@
 #include <QHash>
 #include <QLibraryInfo>
 #include <QPdfWriter>
+#include <QPicture>
 #include <QThread>
 #include <clocale>
 #include <cmath>
@@ -88,21 +89,21 @@ void start_application() {
 }
 
 /// Runs `work` where widgets may live.
-std::string on_drawing_thread(const std::function<std::string()>& work) {
+void on_drawing_thread(const std::function<void()>& work) {
     std::unique_lock lock(drawing);
     start_application();
     if (made_here || QThread::currentThread() == qApp->thread()) {
-        return work();
+        work();
+        return;
     }
     // A worker of the desktop: the window's thread draws. It may wait for the lock itself, so let it go first.
     lock.unlock();
-    std::string result;
     std::exception_ptr failure;
     QMetaObject::invokeMethod(
         qApp,
         [&] {
             try {
-                result = work();
+                work();
             } catch (...) {
                 failure = std::current_exception();
             }
@@ -111,7 +112,6 @@ std::string on_drawing_thread(const std::function<std::string()>& work) {
     if (failure) {
         std::rethrow_exception(failure);
     }
-    return result;
 }
 
 void check(const PictureSize& size) {
@@ -134,24 +134,51 @@ void prepare(const core::Figure& figure, const PictureSize& size, QCustomPlot& p
     plot.toPainter(&painter, size.width, size.height);
 }
 
-std::string png(const core::Figure& figure, const PictureSize& size) {
-    QCustomPlot plot;
-    prepare(figure, size, plot);
+/// A figure on its way to pixels: as drawing commands, where they hold no image (of an image they would hold a PNG,
+/// which takes longer than to paint it), else painted.
+struct Half {
+    QPicture commands;
+    QImage painted;
+};
+
+QImage blank(const PictureSize& size) {
     QImage image(static_cast<int>(std::lround(size.width * size.scale)),
                  static_cast<int>(std::lround(size.height * size.scale)), QImage::Format_RGB32);
     image.fill(Qt::white);
-    {
-        QCPPainter painter(&image);
-        if (size.scale != 1) {
-            painter.setMode(QCPPainter::pmNonCosmetic);
-        }
+    return image;
+}
+
+/// What the window's thread has to do.
+void begin_png(const core::Figure& figure, const PictureSize& size, Half& half) {
+    QCustomPlot plot;
+    prepare(figure, size, plot);
+    const bool images = !figure.classes.empty() || !figure.maps.empty();
+    half.painted = images ? blank(size) : QImage();
+    QCPPainter painter;
+    painter.begin(images ? static_cast<QPaintDevice*>(&half.painted) : &half.commands);
+    if (size.scale != 1) {
+        painter.setMode(QCPPainter::pmNonCosmetic);
+    }
+    if (images) {
         painter.scale(size.scale, size.scale);
-        plot.toPainter(&painter, size.width, size.height);
+    } else {
+        painter.setMode(QCPPainter::pmNoCaching);
+    }
+    plot.toPainter(&painter, size.width, size.height);
+}
+
+/// What any thread may do, and takes longest: the pixels are the same.
+std::string finish_png(const PictureSize& size, Half& half) {
+    if (half.painted.isNull()) {
+        half.painted = blank(size);
+        QPainter painter(&half.painted);
+        painter.scale(size.scale, size.scale);
+        painter.drawPicture(0, 0, half.commands);
     }
     QByteArray bytes;
     QBuffer buffer(&bytes);
     buffer.open(QIODevice::WriteOnly);
-    if (!image.save(&buffer, "PNG")) {
+    if (!half.painted.save(&buffer, "PNG")) {
         throw core::SystemError("memory", "the picture could not be encoded");
     }
     return bytes.toStdString();
@@ -202,12 +229,16 @@ void start_drawing() {
 
 std::string render_png(const core::Figure& figure, const PictureSize& size) {
     check(size);
-    return on_drawing_thread([&] { return png(figure, size); });
+    Half half;
+    on_drawing_thread([&] { begin_png(figure, size, half); });
+    return finish_png(size, half);
 }
 
 std::string render_pdf(const core::Figure& figure, const PictureSize& size) {
     check(size);
-    return on_drawing_thread([&] { return pdf(figure, size); });
+    std::string bytes;
+    on_drawing_thread([&] { bytes = pdf(figure, size); });
+    return bytes;
 }
 
 void write_picture(const core::Figure& figure, const std::filesystem::path& path, const PictureSize& size) {

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "core/text.h"
+#include "postproc/field/times.h"
 #include "postproc/importers/cgns/cgns_block.h"
 #include "postproc/importers/cgns/cgns_file.h"
 #include "postproc/importers/cgns/cgns_surfaces.h"
@@ -82,9 +83,7 @@ Field Reader::read() {
         if (file_.time()) {
             field.metadata.emplace_back("time", core::format_number(*file_.time()));
         }
-        const auto [first, last] = std::minmax_element(times.begin(), times.end());
-        field.metadata.emplace_back("times", std::to_string(times.size()) + " from " + core::format_number(*first) +
-                                                 " to " + core::format_number(*last));
+        state_times(field, times);
     }
     double zones_read = 0;
     for (const int index : file_.zones()) {

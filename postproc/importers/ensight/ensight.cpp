@@ -7,6 +7,7 @@
 
 #include "core/inputs.h"
 #include "core/text.h"
+#include "postproc/field/times.h"
 #include "postproc/importers/ensight/ensight_case.h"
 #include "postproc/importers/ensight/ensight_geometry.h"
 #include "postproc/importers/import_context.h"
@@ -399,12 +400,10 @@ Field Reader::read() {
     if (files.time) {
         field_.metadata.emplace_back("time", core::format_number(*files.time));
     }
-    if (files.steps > 1) {
-        field_.metadata.emplace_back(
-            "times",
-            std::to_string(files.steps) + (files.times.empty() ? " steps"
-                                                               : " from " + core::format_number(files.times.front()) +
-                                                                     " to " + core::format_number(files.times.back())));
+    if (files.steps > 1 && files.times.empty()) {
+        field_.metadata.emplace_back("times", std::to_string(files.steps) + " steps");
+    } else if (files.steps > 1) {
+        state_times(field_, files.times);
     }
     if (files.steps > 1 && !options_.time) {
         field_.problems.push_back({core::Problem::Severity::note,

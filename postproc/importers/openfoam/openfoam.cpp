@@ -6,6 +6,7 @@
 
 #include "core/inputs.h"
 #include "core/text.h"
+#include "postproc/field/times.h"
 #include "postproc/importers/import_context.h"
 #include "postproc/importers/importer.h"
 #include "postproc/importers/mesh/face_mesh.h"
@@ -416,9 +417,7 @@ void Reader::finish(Field& field) const {
         field.metadata.emplace_back("time", time_name_);
     }
     if (times_.size() > 1) {
-        field.metadata.emplace_back("times", std::to_string(times_.size()) + " from " +
-                                                 core::format_number(times_.front()) + " to " +
-                                                 core::format_number(times_.back()));
+        state_times(field, times_);
     }
     if (pieces_.size() > 1) {
         field.metadata.emplace_back("processors", std::to_string(pieces_.size()));

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/field/lists.h"
+#include "postproc/loads/mirror_plane.h"
 #include "studio/desktop/state/action_parts.h"
 
 namespace underbody::studio::action {
@@ -15,7 +16,7 @@ namespace {
 
 /// "surface", or a picture that postproc::views knows.
 std::string checked_view(const std::string& text) {
-    std::vector<std::string> known = {"surface"};
+    std::vector<std::string> known = {"surface", "profile-gap"};
     for (const auto& kind : postproc::view_kinds()) {
         known.push_back(kind.name);
     }
@@ -44,10 +45,13 @@ bool set_reading(FileReading& reading, const std::string& word) {
     if (key == "length_unit") {
         reading.length_unit = checked_unit(text, "m");
     } else if (key == "symmetry") {
-        if (!text.empty() && text != "x" && text != "y" && text != "z") {
-            throw UsageError("range", "'" + text + "' is no axis", {}, "x, y or z; nothing for a whole body");
+        static_cast<void>(postproc::mirror_plane_from(text));  // says what is wrong with it
+        reading.symmetry = text == "none" ? "" : text;
+    } else if (key == "density") {
+        reading.density = number_or_none(text, "kg/m^3");
+        if (reading.density && !(*reading.density > 0)) {
+            throw UsageError("range", "the density " + text + " is not above nought");
         }
-        reading.symmetry = text;
     } else if (key == "zones") {
         reading.zones.clear();
         for (const auto part : core::split(text, ',')) {
@@ -62,7 +66,7 @@ bool set_reading(FileReading& reading, const std::string& word) {
             reading.units[key.substr(5)] = checked_unit(text, nullptr);
         }
     } else if (key.find('.') == std::string::npos) {
-        unknown_key(key, {"length_unit", "unit.VARIABLE", "symmetry", "zones"});
+        unknown_key(key, {"length_unit", "unit.VARIABLE", "symmetry", "density", "zones"});
     } else {
         return false;
     }
@@ -72,7 +76,7 @@ bool set_reading(FileReading& reading, const std::string& word) {
 }  // namespace
 
 State read_as(State state, const Words& words, const Session&) {
-    need(words, 1, 1000, "read FILE ... length_unit=mm unit.Pressure=Pa symmetry=y zones=hull,base");
+    need(words, 1, 1000, "read FILE ... length_unit=mm unit.Pressure=Pa symmetry=y density=998kg/m^3 zones=hull,base");
     FileReading tried;
     std::vector<std::string> files;
     for (const auto& word : words) {
@@ -99,13 +103,32 @@ State read_as(State state, const Words& words, const Session&) {
     return state;
 }
 
+namespace {
+
+/// "10mm,0,2mm"; empty: none.
+std::optional<std::array<double, 3>> point_from(const std::string& text) {
+    if (text.empty()) {
+        return {};
+    }
+    const auto parts = core::split(text, ',');
+    if (parts.size() != 3) {
+        throw UsageError("parse", "'" + text + "' is no place", {},
+                         "X,Y,Z in the axes of the file, such as 10mm,0,2mm");
+    }
+    return std::array<double, 3>{core::parse_in(parts[0], "m"), core::parse_in(parts[1], "m"),
+                                 core::parse_in(parts[2], "m")};
+}
+
+}  // namespace
+
 State look_at_fields(State state, const Words& words, const Session&) {
     need(words, 1, 1000, "fields KEY=VALUE ...");
     FieldView& view = state.fields;
     for (const auto& word : words) {
         const auto [key, text] = assignment(word);
         if (key == "array") {
-            view.array = text;
+            view.array = text;  // as it is shown, or with the underscores of its name
+            std::replace(view.array.begin(), view.array.end(), '_', ' ');
         } else if (key == "whole_range") {
             view.whole_range = yes_or_no(text);
         } else if (key == "edges") {
@@ -116,6 +139,8 @@ State look_at_fields(State state, const Words& words, const Session&) {
             view.view = checked_view(text);
         } else if (key == "time") {
             view.time = number_or_none(text, "s");
+        } else if (key == "probe") {
+            view.probe = point_from(text);
         } else if (key == "difference") {
             view.difference = yes_or_no(text);
         } else if (key == "range") {
@@ -130,7 +155,7 @@ State look_at_fields(State state, const Words& words, const Session&) {
             view.zones[key.substr(5)] = yes_or_no(text);
         } else {
             unknown_key(key, {"array", "whole_range", "edges", "mirror", "difference", "range", "camera", "view",
-                              "time", "zone.NAME"});
+                              "time", "probe", "zone.NAME"});
         }
     }
     return state;

@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "studio/desktop/state/actions.h"
+#include "studio/desktop/state/measured.h"
 
 namespace underbody::studio {
 
@@ -182,6 +183,9 @@ void add_reading(const State& state, const std::string& file, Words& line) {
     if (!reading.symmetry.empty()) {
         line.insert(line.end(), {"--symmetry", reading.symmetry});
     }
+    if (reading.density) {
+        line.insert(line.end(), {"--density", core::format_number(*reading.density) + "kg/m^3"});
+    }
     std::string zones;
     for (const auto& zone : reading.zones) {
         zones += (zones.empty() ? "" : ",") + zone;
@@ -189,6 +193,28 @@ void add_reading(const State& state, const std::string& file, Words& line) {
     if (!zones.empty()) {
         line.insert(line.end(), {"--zones", zones});
     }
+}
+
+/// The values at a place of the first of the fields that are chosen.
+std::string probe_command(const State& state, const Session& session) {
+    const auto& at = *state.fields.probe;
+    for (const auto& id : state.selection) {
+        if (const std::string file = path_of_field(id, session); !file.empty()) {
+            Words line = {
+                "underbody",
+                "probe",
+                file,
+                "--point",
+                core::format_number(at[0]) + "," + core::format_number(at[1]) + "," + core::format_number(at[2]),
+                "--on-surface"};
+            add_reading(state, file, line);
+            if (state.fields.time) {
+                line.insert(line.end(), {"--time", core::format_number(*state.fields.time) + "s"});
+            }
+            return line_of(line);
+        }
+    }
+    return {};
 }
 
 /// Pictures of the fields that are chosen; surfaces that are turned by hand have no command.
@@ -261,6 +287,9 @@ std::string name_of(const Words& words) {
     if (verb == "read") {
         return "units of " + first.substr(first.rfind('/') + 1) + more;
     }
+    if (verb == "measure") {
+        return "take in " + first;
+    }
     if (verb == "exported") {
         return "export " + first.substr(first.rfind('/') + 1);
     }
@@ -305,7 +334,8 @@ std::string command_of(const State& after, const Words& words, const Session& se
         return read_command(after, words);
     }
     if (verb == "fields") {
-        return view_command(after, session);
+        const bool probed = words.size() == 2 && words[1].starts_with("probe=") && after.fields.probe;
+        return probed ? probe_command(after, session) : view_command(after, session);
     }
     if (verb == "keep") {
         Words line = shape_command(after, session, words.at(1));
@@ -314,6 +344,9 @@ std::string command_of(const State& after, const Words& words, const Session& se
     }
     if (verb == "accept") {
         return line_of({"underbody", "study", "accept", after.study, words.at(1)});
+    }
+    if (verb == "measure") {
+        return line_of(command_of_measurement(after.study, words.at(1), after.measured.at(words.at(1))));
     }
     if (verb == "exported") {
         return export_command(after, words);

@@ -29,6 +29,7 @@ std::string need_shape(const State& state, const Session& session);
 
 State look_at_fields(State state, const Words& words, const Session& session);
 State read_as(State state, const Words& words, const Session& session);
+State measure(State state, const Words& words, const Session& session);
 State look_at_table(State state, const Words& words, const Session& session);
 State look_at_region(State state, const Words& words, const Session& session);
 State explore_axes(State state, const Words& words, const Session& session);

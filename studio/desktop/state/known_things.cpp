@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/variants.h"
-#include "surrogates/dynamics/model/model.h"
+#include "studio/desktop/state/known_models.h"
 
 namespace underbody::studio::action {
 
@@ -58,17 +58,23 @@ std::vector<std::string> names_of(const State& state, const Session& session, co
         for (const auto& entry : state.files) {
             names.push_back(entry.substr(entry.find(':') + 1));
         }
+    } else if (kind == "measurement") {
+        names = names_in(session.study.measurements);
+        for (const auto& [name, record] : state.measured) {
+            if (std::find(names.begin(), names.end(), name) == names.end()) {
+                names.push_back(name);  // it is on its way to the disk
+            }
+        }
     } else if (kind == "export") {
         for (const auto& [file, record] : state.exports) {
             names.push_back(file);
         }
     }
     const auto& study = session.study;
-    return kind == "case"          ? names_in(study.cases)
-           : kind == "table"       ? names_in(study.tables)
-           : kind == "region"      ? names_in(study.regions)
-           : kind == "measurement" ? names_in(study.measurements)
-                                   : names;
+    return kind == "case"     ? names_in(study.cases)
+           : kind == "table"  ? names_in(study.tables)
+           : kind == "region" ? names_in(study.regions)
+                              : names;
 }
 
 void need_things(const State& state, const Session& session, const std::vector<std::string>& ids) {
@@ -176,9 +182,9 @@ bool is_of_added_force(const std::string& name, std::size_t own, std::size_t add
 void need_parameter(const Session& session, const std::string& region, const std::string& name, double value) {
     for (const auto& spec : session.study.regions) {
         if (spec.name == region) {
-            const auto model = dynamics::read_model(spec.model);
-            if (!is_of_added_force(name, model.forces.size(), spec.forces.size())) {
-                static_cast<void>(model.with_parameter(name, value));
+            const auto model = known_model(spec.model);
+            if (!is_of_added_force(name, model->forces.size(), spec.forces.size())) {
+                static_cast<void>(model->with_parameter(name, value));
             }
         }
     }

@@ -141,6 +141,7 @@ json json_of(const FieldView& v) {
             {"camera", v.camera},
             {"view", v.view},
             {"time", optional_json(v.time)},
+            {"probe", optional_json(v.probe)},
             {"zones", v.zones}};
 }
 
@@ -155,12 +156,17 @@ FieldView fields_from(const json& object) {
     take(object, "camera", v.camera);
     take(object, "view", v.view);
     take(object, "time", v.time);
+    take(object, "probe", v.probe);
     take(object, "zones", v.zones);
     return v;
 }
 
 json json_of(const FileReading& v) {
-    return {{"length_unit", v.length_unit}, {"units", v.units}, {"symmetry", v.symmetry}, {"zones", v.zones}};
+    return {{"length_unit", v.length_unit},
+            {"units", v.units},
+            {"symmetry", v.symmetry},
+            {"density", optional_json(v.density)},
+            {"zones", v.zones}};
 }
 
 FileReading reading_from(const json& object) {
@@ -168,6 +174,7 @@ FileReading reading_from(const json& object) {
     take(object, "length_unit", v.length_unit);
     take(object, "units", v.units);
     take(object, "symmetry", v.symmetry);
+    take(object, "density", v.density);
     take(object, "zones", v.zones);
     return v;
 }
@@ -248,6 +255,19 @@ ExportRecord export_from(const json& object) {
     return v;
 }
 
+json json_of(const MeasuredRecord& v) {
+    return {{"model", v.model}, {"data", v.data}, {"channels", v.channels}, {"clock", v.clock}};
+}
+
+MeasuredRecord measured_from(const json& object) {
+    MeasuredRecord v;
+    take(object, "model", v.model);
+    take(object, "data", v.data);
+    take(object, "channels", v.channels);
+    take(object, "clock", v.clock);
+    return v;
+}
+
 json json_of(const ExploreView& v) {
     json vary = json::array();
     for (const auto& one : v.vary) {
@@ -284,6 +304,10 @@ State read_state(const json& object) {
     for (const auto& [file, one] : exports.items()) {
         state.exports[file] = export_from(one);
     }
+    const json measured = object.value("measured", json::object());
+    for (const auto& [name, one] : measured.items()) {
+        state.measured[name] = measured_from(one);
+    }
     const json readings = object.value("readings", json::object());
     for (const auto& [file, one] : readings.items()) {
         state.readings[file] = reading_from(one);
@@ -311,9 +335,13 @@ void to_json(json& object, const State& state) {
               {"tables", json::object()},
               {"readings", json::object()},
               {"regions", json::object()},
+              {"measured", json::object()},
               {"exports", json::object()}};
     for (const auto& [file, one] : state.exports) {
         object["exports"][file] = json_of(one);
+    }
+    for (const auto& [name, one] : state.measured) {
+        object["measured"][name] = json_of(one);
     }
     for (const auto& [name, one] : state.tables) {
         object["tables"][name] = json_of(one);

@@ -59,7 +59,8 @@ struct RegionView {
 struct FileReading {
     std::string length_unit;                   ///< of its coordinates
     std::map<std::string, std::string> units;  ///< of variables by their name in the file
-    std::string symmetry;                      ///< normal axis of a half model; empty: a whole body
+    std::string symmetry;                      ///< plane of a half model ("y", "y=0.1"); empty: a whole body
+    std::optional<double> density;             ///< kg/m^3, of files that hold pressure over density
     std::vector<std::string> zones;            ///< patterns of the zones that are the body
     bool operator==(const FileReading&) const = default;
 };
@@ -76,6 +77,7 @@ struct FieldView {
     std::optional<double> time;                  ///< s, of files with several; none: the last
     std::string camera = "iso";                  ///< "bottom", "top", "side", "front", "iso"
     std::map<std::string, bool> zones;           ///< ticked by hand
+    std::optional<std::array<double, 3>> probe;  ///< m, file axes: where values are read off
     bool operator==(const FieldView&) const = default;
 };
 
@@ -110,6 +112,15 @@ struct ExportRecord {
     bool operator==(const ExportRecord&) const = default;
 };
 
+/// A measurement that was taken into the study.
+struct MeasuredRecord {
+    std::string model;                  ///< absolute
+    std::vector<std::string> data;      ///< absolute: a data set's folder, logs, tables
+    std::vector<std::string> channels;  ///< "gap=RFND/Dist:cm"
+    std::string clock;                  ///< "t_ms:ms"; empty: the log's own time, the column time
+    bool operator==(const MeasuredRecord&) const = default;
+};
+
 struct State {
     std::string study;               ///< folder, absolute; empty: none
     std::vector<std::string> files;  ///< from outside the study: "field:PATH", "shape:PATH"
@@ -126,6 +137,7 @@ struct State {
     std::map<std::string, RegionView> regions;
     std::set<std::string> accepted;               ///< measurements whose found model counts as theirs
     std::map<std::string, ExportRecord> exports;  ///< by path, absolute
+    std::map<std::string, MeasuredRecord> measured;
     bool operator==(const State&) const = default;
 
     /// Names of the selected things of a kind ("case"), in the order in which they were chosen.

@@ -154,8 +154,8 @@ void add_flow(const HeaveRegionSetup& setup, const RegionOptions& o, bool gap_fi
     const HeavePlant& plant = setup.plant;
     for (int j = 0; j < up; ++j) {
         for (int i = 0; i < across; ++i) {
-            const double x = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (i + 0.5) / across;
-            const double y = o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (j + 0.5) / up;
+            const double x = place_along(o.axes[0], o.gap_by_ratio, (i + 0.5) / across);
+            const double y = place_along(o.axes[1], o.gap_by_ratio, (j + 0.5) / up);
             const double h = gap_first ? x : y, w = gap_first ? y : x;
             if (h < setup.contact_gap) {
                 continue;
@@ -322,8 +322,8 @@ core::Table region_table(const StabilityRegion& region) {
     std::vector<double> x, y, time;
     std::vector<std::string> names, kinds;
     for (std::size_t k = 0; k < region.index.size(); ++k) {
-        const auto part = [](const core::NamedRange& axis, std::size_t i, std::size_t count) {
-            return axis.lower + (axis.upper - axis.lower) * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+        const auto part = [&](const core::NamedRange& axis, std::size_t i, std::size_t count) {
+            return place_along(axis, region.gap_by_ratio, (static_cast<double>(i) + 0.5) / static_cast<double>(count));
         };
         x.push_back(part(region.axes[0], k % region.columns, region.columns));
         y.push_back(part(region.axes[1], k / region.columns, region.rows));

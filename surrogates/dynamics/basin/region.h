@@ -56,6 +56,9 @@ struct RegionOptions {
     Motion motion = Motion::automatic;
     bool through_contact =
         false;  ///< heave and pitch: go on after a touch; contact is then to come to rest on the ground
+    /// Cells along gap of equal ratio, not of equal width, for maps that are drawn over a logarithmic gap. Fractions
+    /// stay shares of the area. The gap begins above nought then.
+    bool gap_by_ratio = false;
 };
 
 struct RegionBoundary {
@@ -66,6 +69,7 @@ struct RegionBoundary {
 struct StabilityRegion {
     std::vector<core::NamedRange> axes;
     std::size_t columns = 0, rows = 0;
+    bool gap_by_ratio = false;      ///< as in RegionOptions
     std::vector<int> index;         ///< [row * columns + column]: class of the start at the cell's centre
     std::vector<float> time;        ///< s, likewise
     std::vector<EndClass> classes;  ///< only those that occur, plus every attractor there is
@@ -154,6 +158,7 @@ struct ProbabilityMap {
     double area_mean = 0, area_sigma = 0;  ///< safe fraction of the area over the draws
     double path_outside_fraction = 0;      ///< share of the motions of all draws that leave the range of a force table
     std::size_t draws = 0;
+    bool gap_by_ratio = false;  ///< as in RegionOptions
     core::Problems remarks;
 };
 ProbabilityMap probability_map(const Model& model, const RegionOptions& options, std::size_t draws, std::uint64_t seed,

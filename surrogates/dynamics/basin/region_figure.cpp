@@ -48,10 +48,13 @@ core::Colour class_colour(const EndClass& end, std::size_t attractor) {
 
 std::string percent(double fraction) { return core::format_number(100 * fraction, 3) + " %"; }
 
-void frame(core::Figure& figure, const std::vector<core::NamedRange>& axes) {
+/// Cells of equal ratio are drawn on a logarithmic axis, on which they are of equal width.
+void frame(core::Figure& figure, const std::vector<core::NamedRange>& axes, bool gap_by_ratio) {
     const Shown x = shown(axes[0].name), y = shown(axes[1].name);
     figure.x = {x.label, x.unit, axes[0].lower * x.scale, axes[0].upper * x.scale};
     figure.y = {y.label, y.unit, axes[1].lower * y.scale, axes[1].upper * y.scale};
+    figure.x.logarithmic = gap_by_ratio && axes[0].name == "gap";
+    figure.y.logarithmic = gap_by_ratio && axes[1].name == "gap";
 }
 
 /// The parts of a line inside the axes; NaN parts them.
@@ -122,7 +125,7 @@ bool over_gap_and_pitch(const StabilityRegion& region) {
 core::Figure region_figure(const StabilityRegion& region) {
     core::Figure figure;
     figure.title = "Where each start ends";
-    frame(figure, region.axes);
+    frame(figure, region.axes, region.gap_by_ratio);
     core::FigureClasses map;
     place(map, figure, region.columns, region.rows);
     map.index = region.index;
@@ -184,7 +187,7 @@ core::Figure region_overlay_figure(const std::vector<StabilityRegion>& regions, 
     if (regions.empty()) {
         return figure;
     }
-    frame(figure, regions.front().axes);
+    frame(figure, regions.front().axes, regions.front().gap_by_ratio);
     for (std::size_t k = 0; k < regions.size(); ++k) {
         if (regions[k].axes.size() != 2 || regions[k].axes[0].name != regions[0].axes[0].name ||
             regions[k].axes[1].name != regions[0].axes[1].name) {
@@ -245,9 +248,11 @@ core::Figure sweep_figure(const RegionSweep& sweep) {
 core::Figure probability_figure(const ProbabilityMap& map) {
     core::Figure figure;
     figure.title = "Chance that a start is safe";
-    frame(figure, map.axes);
+    frame(figure, map.axes, map.gap_by_ratio);
     core::FigureMap values;
     place(values, figure, map.columns, map.rows);
+    values.x_by_ratio = figure.x.logarithmic;
+    values.y_by_ratio = figure.y.logarithmic;
     values.values.assign(map.safe.begin(), map.safe.end());
     values.label = "probability";
     values.unit = "1";

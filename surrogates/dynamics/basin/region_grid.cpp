@@ -30,6 +30,11 @@ void check_region_options(const RegionOptions& options) {
             refuse("axis " + axis.name + " needs a lower and a higher bound");
         }
     }
+    for (const core::NamedRange& axis : options.axes) {
+        if (options.gap_by_ratio && axis.name == "gap" && !(axis.lower > 0)) {
+            refuse("cells of equal ratio need an axis of gaps that begins above nought");
+        }
+    }
     if (options.columns < 1 || options.rows < 1 || options.columns * options.rows > 100000000) {
         refuse("a region has between one and 100 million starts");
     }
@@ -52,6 +57,32 @@ void check_gap_axis(const RegionOptions& options, double contact_gap) {
     }
 }
 
+double place_along(const core::NamedRange& axis, bool gap_by_ratio, double share) {
+    return gap_by_ratio && axis.name == "gap" ? axis.lower * std::pow(axis.upper / axis.lower, share)
+                                              : axis.lower + (axis.upper - axis.lower) * share;
+}
+
+namespace {
+
+/// Where cell `i` of `count` is at a part of its width.
+double in_cell(const RegionOptions& o, std::size_t axis, std::size_t i, double part) {
+    const std::size_t count = axis == 0 ? o.columns : o.rows;
+    return place_along(o.axes[axis], o.gap_by_ratio, (static_cast<double>(i) + part) / static_cast<double>(count));
+}
+
+/// Width of part `k` of `parts` of cell `i`, in mean widths of a cell.
+double width_of(const RegionOptions& o, std::size_t axis, std::size_t i, std::size_t k = 0, std::size_t parts = 1) {
+    const double fine = static_cast<double>(parts);
+    if (!o.gap_by_ratio || o.axes[axis].name != "gap") {
+        return 1 / fine;
+    }
+    const double width =
+        in_cell(o, axis, i, static_cast<double>(k + 1) / fine) - in_cell(o, axis, i, static_cast<double>(k) / fine);
+    return width * static_cast<double>(axis == 0 ? o.columns : o.rows) / (o.axes[axis].upper - o.axes[axis].lower);
+}
+
+}  // namespace
+
 std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, const core::Progress& progress) {
     std::vector<double> x, y;
     x.reserve(o.columns * o.rows);
@@ -59,10 +90,8 @@ std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, c
     for (std::size_t j = 0; j < o.rows; ++j) {
         progress.check();
         for (std::size_t i = 0; i < o.columns; ++i) {
-            x.push_back(o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(i) + 0.5) /
-                                              static_cast<double>(o.columns));
-            y.push_back(o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (static_cast<double>(j) + 0.5) /
-                                              static_cast<double>(o.rows));
+            x.push_back(in_cell(o, 0, i, 0.5));
+            y.push_back(in_cell(o, 1, j, 0.5));
         }
     }
     std::vector<End> ends;
@@ -100,28 +129,26 @@ std::array<std::vector<double>, 2> region_fractions(const RegionOptions& o, cons
             if (at_edge) {
                 edge.push_back(j * columns + i);
             } else {
-                count(ends[j * columns + i], 1);
+                count(ends[j * columns + i], width_of(o, 0, i) * width_of(o, 1, j));
             }
         }
     }
     std::vector<double> x(edge.size() * fine * fine), y(x.size());
-    const double dx = (o.axes[0].upper - o.axes[0].lower) / static_cast<double>(columns);
-    const double dy = (o.axes[1].upper - o.axes[1].lower) / static_cast<double>(rows);
     for (std::size_t k = 0; k < edge.size(); ++k) {
         if (k % 4096 == 0) {
             progress.check();
         }
         for (std::size_t f = 0; f < fine * fine; ++f) {
-            x[k * fine * fine + f] = o.axes[0].lower + dx * (static_cast<double>(edge[k] % columns) +
-                                                             (static_cast<double>(f % fine) + 0.5) / fine);
-            y[k * fine * fine + f] = o.axes[1].lower + dy * (static_cast<double>(edge[k] / columns) +
-                                                             (static_cast<double>(f / fine) + 0.5) / fine);
+            x[k * fine * fine + f] = in_cell(o, 0, edge[k] % columns, (static_cast<double>(f % fine) + 0.5) / fine);
+            y[k * fine * fine + f] = in_cell(o, 1, edge[k] / columns, (static_cast<double>(f / fine) + 0.5) / fine);
         }
     }
     std::vector<End> refined(x.size());
     batch(x, y, refined);
-    for (const End& end : refined) {
-        count(end, 1.0 / (fine * fine));
+    for (std::size_t k = 0; k < refined.size(); ++k) {
+        const std::size_t cell = edge[k / (fine * fine)], f = k % (fine * fine);
+        count(refined[k],
+              width_of(o, 0, cell % columns, f % fine, fine) * width_of(o, 1, cell / columns, f / fine, fine));
     }
     for (std::vector<double>& list : sums) {
         for (double& sum : list) {
@@ -139,6 +166,7 @@ StabilityRegion region_map(const RegionOptions& options, const RegionBatch& batc
     region.axes = options.axes;
     region.columns = options.columns;
     region.rows = options.rows;
+    region.gap_by_ratio = options.gap_by_ratio;
     region.duration = options.duration;
     const auto [sums, outside] = region_fractions(options, batch, ends, classes.size(), progress);
     std::vector<bool> occurs(classes.size(), false);
@@ -201,14 +229,8 @@ void bisect(std::vector<Crossing>& crossings, const RegionOptions& o, const Regi
 void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
                            const std::vector<End>& ends, const core::Progress& progress) {
     const std::size_t columns = o.columns, rows = o.rows;
-    const auto x_of = [&](std::size_t k) {
-        return o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (static_cast<double>(k % columns) + 0.5) /
-                                     static_cast<double>(columns);
-    };
-    const auto y_of = [&](std::size_t k) {
-        return o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (static_cast<double>(k / columns) + 0.5) /
-                                     static_cast<double>(rows);
-    };
+    const auto x_of = [&](std::size_t k) { return in_cell(o, 0, k % columns, 0.5); };
+    const auto y_of = [&](std::size_t k) { return in_cell(o, 1, k / columns, 0.5); };
     // Crossing k of start s: 2 s toward the next column, 2 s + 1 toward the next row.
     std::vector<Crossing> crossings;
     std::vector<std::ptrdiff_t> of;

@@ -15,6 +15,8 @@ struct HeaveRegionSetup {
     HeaveRegionSetup(const Model& model, const RegionOptions& options, const std::vector<double>* start_gaps = nullptr);
 };
 
+/// The place along an axis at a share of its cells (0: lower end, 1: upper end).
+double place_along(const core::NamedRange& axis, bool gap_by_ratio, double share);
 /// Ends of starts given by their values along the two axes.
 using RegionBatch = std::function<void(std::span<const double> x, std::span<const double> y, std::span<End> out)>;
 

@@ -22,8 +22,8 @@ void add_flow(const HeavePitch& plant, const RegionOptions& o, const PitchState&
     for (int j = 0; j < up; ++j) {
         for (int i = 0; i < across; ++i) {
             PitchState y = middle, d{};
-            y[first] = o.axes[0].lower + (o.axes[0].upper - o.axes[0].lower) * (i + 0.5) / across;
-            y[second] = o.axes[1].lower + (o.axes[1].upper - o.axes[1].lower) * (j + 0.5) / up;
+            y[first] = place_along(o.axes[0], o.gap_by_ratio, (i + 0.5) / across);
+            y[second] = place_along(o.axes[1], o.gap_by_ratio, (j + 0.5) / up);
             const std::array<double, 2> gaps = plant.edge_gaps(y);
             if (std::min(gaps[0], gaps[1]) < 0) {
                 continue;

@@ -18,6 +18,7 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     map.columns = options.columns;
     map.rows = options.rows;
     map.draws = draws;
+    map.gap_by_ratio = options.gap_by_ratio;
     map.safe.assign(options.columns * options.rows, 0.0F);
     RegionOptions each = options;
     each.refine = false;
@@ -30,13 +31,14 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
         const StabilityRegion region = stability_region(drawn_model(model, seed, draw), each, progress);
         map.path_outside_fraction += region.path_outside_fraction / static_cast<double>(draws);
         range = table_range_text(region.table_lower, region.table_upper, region.pitch_lower, region.pitch_upper);
-        std::size_t safe = 0;
         for (std::size_t i = 0; i < region.index.size(); ++i) {
             const bool back = region.classes[static_cast<std::size_t>(region.index[i])].kind == EndKind::attractor;
             map.safe[i] += back ? 1.0F : 0.0F;
-            safe += back ? 1 : 0;
         }
-        const double share = static_cast<double>(safe) / static_cast<double>(region.index.size());
+        double share = 0;  // of the area
+        for (const EndClass& end : region.classes) {
+            share += end.kind == EndKind::attractor ? end.fraction : 0;
+        }
         sum += share;
         squares += share * share;
     }
@@ -103,16 +105,19 @@ SafeSet largest_safe_set(const StabilityRegion& region, const std::string& equil
         }
     }
     const core::NamedRange &ax = region.axes[0], &ay = region.axes[1];
-    const double dx = (ax.upper - ax.lower) / static_cast<double>(region.columns),
-                 dy = (ay.upper - ay.lower) / static_cast<double>(region.rows);
+    const auto edge = [&](const core::NamedRange& axis, std::size_t i, std::size_t count) {
+        return place_along(axis, region.gap_by_ratio, static_cast<double>(i) / static_cast<double>(count));
+    };
     // Cells that do not end there, relative to the equilibrium; the border of the map counts as not known to be safe.
     std::vector<std::pair<double, double>> bad;
     for (std::size_t k = 0; k < region.index.size(); ++k) {
         if (region.index[k] != wanted) {
-            const double x = ax.lower + dx * (static_cast<double>(k % region.columns) + 0.5),
-                         y = ay.lower + dy * (static_cast<double>(k / region.columns) + 0.5);
-            bad.emplace_back(std::max(0.0, std::abs(x - set.centre[0]) - dx / 2),
-                             std::max(0.0, std::abs(y - set.centre[1]) - dy / 2));
+            const std::size_t i = k % region.columns, j = k / region.columns;
+            const auto away = [](double centre, double lower, double upper) {
+                return std::max({0.0, lower - centre, centre - upper});
+            };
+            bad.emplace_back(away(set.centre[0], edge(ax, i, region.columns), edge(ax, i + 1, region.columns)),
+                             away(set.centre[1], edge(ay, j, region.rows), edge(ay, j + 1, region.rows)));
         }
     }
     const double most_x = std::min(set.centre[0] - ax.lower, ax.upper - set.centre[0]),

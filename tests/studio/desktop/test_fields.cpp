@@ -16,13 +16,16 @@
 #include <QStyleOption>
 #include <QTableWidget>
 #include <QTest>
+#include <QToolButton>
 
 #include "cases/case_loads.h"
 #include "core/text.h"
+#include "postproc/probe/probe.h"
 #include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/parallel_view.h"
+#include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/take_in_sheet.h"
 #include "studio/desktop/theme.h"
@@ -233,6 +236,203 @@ TEST_F(Window, TheEstimatorSaysWhatItCanSeparateAlongTheGap) {
     settle(*window_);
     EXPECT_NE(stability.known(), shown);
     EXPECT_FALSE(act("region glide gap_noise=0"));
+}
+
+QListWidgetItem* zone_item(FieldsPanel& fields, const QString& name) {
+    for (auto* list : fields.findChildren<QListWidget*>()) {
+        const auto items = list->findItems(name, Qt::MatchExactly);
+        if (list->accessibleName() == "Zones" && !items.isEmpty()) {
+            return items.front();
+        }
+    }
+    return nullptr;
+}
+
+template <class Widget>
+Widget* named(QWidget& in, const QString& name) {
+    for (auto* one : in.findChildren<Widget*>()) {
+        if (one->accessibleName() == name) {
+            return one;
+        }
+    }
+    return nullptr;
+}
+
+/// An OpenFOAM case with three times, whose pressure is that of the test's own times one, two and three.
+fs::path case_of_three_times(const fs::path& folder) {
+    const fs::path foam = folder / "foam";
+    fs::copy(test::data_folder() / "openfoam" / "ascii", foam, fs::copy_options::recursive);
+    fs::path last;
+    double latest = -1;
+    for (const auto& entry : fs::directory_iterator(foam)) {
+        if (const auto time = core::parse_number(entry.path().filename().string()); time && *time > latest) {
+            latest = *time;
+            last = entry.path();
+        }
+    }
+    for (const char* later : {"7", "8.5"}) {
+        fs::copy(last, foam / later, fs::copy_options::recursive);
+    }
+    return foam;
+}
+
+// The name that a file gives an array is as good as the label that people read.
+TEST_F(Window, AnArrayIsNamedByItsOwnNameToo) {
+    open(computed_study());
+    act("select case/ellipse-h5-p0");
+    act("workspace compare");
+    settle(*window_);
+    EXPECT_TRUE(act("fields array=wall_shear"));
+    settle(*window_);
+    EXPECT_EQ(named<QComboBox>(panel<FieldsPanel>(), "Colour by")->currentText(), "wall shear");
+    EXPECT_EQ(window_->last_error(), "");
+    act("fields array=wall_sheer");
+    settle(*window_);
+    EXPECT_TRUE(window_->last_error().contains("did you mean 'wall shear'")) << window_->last_error().toStdString();
+}
+
+// Times of a transient case: a list of them, one step earlier or later, by hand or as an action; undone as any other.
+TEST_F(Window, TimesAreSteppedThrough) {
+    window_->take_files({case_of_three_times(folder_.path())});
+    settle(*window_);
+    ASSERT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
+    auto& fields = panel<FieldsPanel>();
+    auto* time = named<QComboBox>(fields, "Time");
+    auto* earlier = named<QToolButton>(fields, "Earlier");
+    auto* later = named<QToolButton>(fields, "Later");
+    ASSERT_TRUE(time != nullptr && earlier != nullptr && later != nullptr);
+    ASSERT_TRUE(time->isVisible());
+    ASSERT_GE(time->count(), 3);
+    EXPECT_EQ(time->itemText(time->count() - 1), "8.5 s");
+    EXPECT_EQ(time->currentText(), "") << "the last";
+    earlier->click();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().fields.time, 7.0);
+    EXPECT_EQ(time->currentText(), "7 s");
+    EXPECT_EQ(fields.drawn(), 1U);
+    later->click();
+    later->click();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().fields.time, 8.5) << "there is none after the last";
+    window_->desk().undo();
+    settle(*window_);
+    EXPECT_FALSE(window_->desk().state().fields.time);
+    act("fields time=99s");
+    settle(*window_);
+    EXPECT_TRUE(fields.failed(0).contains("no time 99 s")) << fields.failed(0).toStdString();
+}
+
+// What is read off at a place is what the library's probe gives there, of every case that is shown.
+TEST_F(Window, ValuesAreReadOffAtAPlace) {
+    open(computed_study());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    act("workspace compare");
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    EXPECT_EQ(fields.probed(), "");
+    EXPECT_TRUE(act("fields probe=10mm,5mm,0"));
+    settle(*window_);
+    postproc::ReadOptions reading;
+    reading.surfaces_only = true;
+    postproc::ProbeOptions on;
+    on.on_surface = true;
+    on.zones = {"base"};
+    for (const char* gap : {"5", "2"}) {
+        const auto field = postproc::read_field(shipped(std::string("ellipse-h") + gap + "-p0.csv"), reading);
+        const auto table = postproc::probe_points(field, {{0.01, 0.005, 0}}, on);
+        const QString value = QString::fromStdString(core::format_number(table.numbers("pressure").front(), 5));
+        EXPECT_TRUE(fields.probed().contains("pressure " + QString(value).replace('-', QChar(0x2212)) + " Pa"))
+            << fields.probed().toStdString() << "\n"
+            << value.toStdString();
+    }
+    EXPECT_NE(window_->desk().history().steps().back().command.find("underbody probe "), std::string::npos);
+    const auto run = test::run_underbody([&] {
+        const Words words = words_of(window_->desk().history().steps().back().command);
+        return std::vector<std::string>(words.begin() + 1, words.end());
+    }());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_FALSE(act("fields probe=10mm,5mm"));
+    EXPECT_TRUE(act("fields probe="));
+    settle(*window_);
+    EXPECT_EQ(fields.probed(), "");
+}
+
+// Zones of the body are marked one by one; the loads follow, and undo takes it back.
+TEST_F(Window, ZonesOfTheBodyAreMarked) {
+    window_->take_files({shipped("ellipse-h5-p0.csv")});
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    ASSERT_NE(zone_item(fields, "base"), nullptr);
+    act("read " + shipped("ellipse-h5-p0.csv").string() + " symmetry=y");
+    settle(*window_);
+    const double whole = lift_shown(fields);
+    fields.mark_zone(0, "base", false);
+    settle(*window_);
+    EXPECT_EQ(window_->last_error(), "");
+    const auto& said = window_->desk().state().readings.at(shipped("ellipse-h5-p0.csv").string());
+    EXPECT_FALSE(said.zones.empty());
+    EXPECT_EQ(std::count(said.zones.begin(), said.zones.end(), "base"), 0);
+    EXPECT_NE(window_->desk().history().steps().back().command.find("--zones "), std::string::npos);
+    EXPECT_FALSE(lift_shown(fields) == whole);
+    fields.mark_zone(0, "base", true);
+    settle(*window_);
+    EXPECT_NEAR(lift_shown(fields), whole, 1e-12);
+    window_->desk().go_to(window_->desk().history().position() - 2);
+    settle(*window_);
+    EXPECT_DOUBLE_EQ(lift_shown(fields), whole);
+}
+
+// A case over density without one says so where its forces would stand; the density is asked with the units.
+TEST_F(Window, ADensityIsAskedWhereAFileNeedsOne) {
+    const fs::path foam = folder_.path() / "foam";
+    fs::copy(test::data_folder() / "openfoam" / "ascii", foam, fs::copy_options::recursive);
+    std::string control = core::read_file(foam / "system" / "controlDict");
+    for (auto at = control.find("rhoInf 998; "); at != std::string::npos; at = control.find("rhoInf 998; ")) {
+        control.erase(at, 12);
+    }
+    core::write_file(foam / "system" / "controlDict", control);
+    window_->take_files({foam});
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    ASSERT_EQ(fields.drawn(), 1U) << fields.failed(0).toStdString();
+    ASSERT_TRUE(std::isnan(lift_shown(fields)));
+    auto* forces = fields.numbers()->forces();
+    EXPECT_TRUE(forces->item(0, 0)->text().contains("density")) << forces->item(0, 0)->text().toStdString();
+    EXPECT_EQ(fields.numbers()->rows().at(1).at(1), "–") << "a sheet has no room for it";
+    EXPECT_TRUE(act("read " + foam.string() + " density=1000kg/m^3"));
+    settle(*window_);
+    const double lift = lift_shown(fields);
+    EXPECT_TRUE(std::isfinite(lift));
+    act("read " + foam.string() + " density=500kg/m^3");
+    settle(*window_);
+    EXPECT_NEAR(lift_shown(fields), lift / 2, 1e-9 * std::abs(lift));
+    EXPECT_NE(window_->desk().history().steps().back().command.find("500kg/m^3"), std::string::npos);
+    EXPECT_FALSE(act("read " + foam.string() + " density=-1kg/m^3"));
+}
+
+// The flow over the gap's height stands among what can be shown; a file without a volume says what it lacks.
+TEST_F(Window, TheGapProfileIsAmongTheViews) {
+    open(computed_study());
+    act("select case/ellipse-h5-p0");
+    act("workspace compare");
+    EXPECT_GE(named<QComboBox>(panel<FieldsPanel>(), "Show")->findData("profile-gap"), 0);
+    EXPECT_TRUE(act("fields view=profile-gap"));
+    settle(*window_);
+    EXPECT_TRUE(panel<FieldsPanel>().said(0).contains("needs a volume")) << panel<FieldsPanel>().said(0).toStdString();
+    EXPECT_NE(window_->desk().history().steps().back().command.find("--view profile-gap"), std::string::npos);
+}
+
+// A place shows its name alone; its folders stand in the tip and in what is copied.
+TEST_F(Window, ProblemsShowNamesAndKeepPaths) {
+    auto* problems = window_->findChild<ProblemList*>();
+    ASSERT_NE(problems, nullptr);
+    const std::string file = (fs::temp_directory_path() / "underbody-x1" / "lift_force-1.csv").string();
+    problems->add({core::Problem::Severity::warning, "the table in " + file + " is short", {file, 3, {}, {}}});
+    const auto* row = problems->topLevelItem(problems->topLevelItemCount() - 1);
+    EXPECT_EQ(row->text(2), "lift_force-1.csv:3");
+    EXPECT_EQ(row->text(1), "the table in lift_force-1.csv is short");
+    EXPECT_TRUE(row->toolTip(2).contains(QString::fromStdString(file)));
+    EXPECT_TRUE(problems->text().contains(QString::fromStdString(file) + ":3"));
 }
 
 // Titles of three lines ("pitch moment (N m)") were cut between near axes.

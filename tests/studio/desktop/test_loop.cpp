@@ -87,6 +87,52 @@ TEST_F(Dropped, ALogIsJudged) {
     EXPECT_EQ(core::read_file(data), set);
 }
 
+// Undo takes what was written out of the study again, redo puts it back; what was changed since stays.
+TEST_F(Dropped, TakingInIsUndone) {
+    const fs::path study = copy_of_study();
+    open(study);
+    write_flight(folder_.path() / "flight.csv");
+    const std::string before = core::read_file(study / "study.toml");
+    const State state = window_->desk().state();
+    auto* sheet = drop({folder_.path() / "flight.csv"});
+    ASSERT_NE(sheet, nullptr);
+    sheet->accept();
+    settle(*window_);
+    const std::string written = core::read_file(study / "study.toml");
+    const fs::path data = study / "measurements" / "flight" / "dataset.toml";
+    ASSERT_NE(written, before) << window_->last_error().toStdString();
+    ASSERT_TRUE(fs::exists(data));
+    EXPECT_EQ(window_->desk().history().steps().back().name, "take in flight");
+    const State taken = window_->desk().state();
+    window_->desk().undo();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state(), state) << "one step";
+    EXPECT_EQ(core::read_file(study / "study.toml"), before);
+    EXPECT_FALSE(fs::exists(study / "measurements"));
+    EXPECT_TRUE(window_->desk().session().study.measurements.empty());
+    window_->desk().redo();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state(), taken);
+    EXPECT_EQ(core::read_file(study / "study.toml"), written);
+    EXPECT_EQ(window_->desk().session().study.measurements.size(), 1U);
+    EXPECT_NE(window_->desk().session().results.document("discovery/flight"), nullptr) << "computed before: reused";
+    // A name that is taken: nothing is done.
+    EXPECT_FALSE(
+        act("measure flight model=" + (study / "glide.toml").string() + " data=" + data.parent_path().string()));
+    settle(*window_);
+    EXPECT_FALSE(window_->last_error().isEmpty());
+    EXPECT_EQ(window_->desk().state(), taken);
+    EXPECT_EQ(core::read_file(study / "study.toml"), written);
+    // Lines that somebody has changed since are not taken out.
+    std::string changed = written;
+    changed.replace(changed.find("discover = true"), 15, "discover = false");
+    core::write_file(study / "study.toml", changed);
+    window_->desk().undo();
+    settle(*window_);
+    EXPECT_TRUE(window_->last_error().contains("have been changed since")) << window_->last_error().toStdString();
+    EXPECT_EQ(core::read_file(study / "study.toml"), changed);
+}
+
 // What is cancelled, or not complete, writes nothing.
 TEST_F(Dropped, NothingIsWrittenBeforeItIsTakenIn) {
     const fs::path study = copy_of_study();

@@ -122,6 +122,41 @@ TEST(Region, FractionsOfAllClassesSumToOne) {
     EXPECT_GT(safe.box[0] * safe.box[1], 0);
 }
 
+// Cells of equal ratio: each start is where the table says, and shares stay those of the area.
+TEST(Region, CellsOfEqualRatioShareTheSameArea) {
+    const Model model = test::ref_a_model(0.02, 6.0, 0.002);
+    RegionOptions even = map_of(0.005, 1.0, 0.1, 160);
+    RegionOptions by_ratio = map_of(0.005, 1.0, 0.1, 80);
+    by_ratio.gap_by_ratio = true;
+    const StabilityRegion reference = stability_region(model, even);
+    const StabilityRegion region = stability_region(model, by_ratio);
+    const core::Table starts = region_table(region);
+    const std::vector<double>& gap = starts.numbers("gap");
+    EXPECT_NEAR(gap[1] / gap[0], std::pow(200.0, 1.0 / 80), 1e-12);
+    EXPECT_NEAR(gap[79] / gap[78], gap[1] / gap[0], 1e-12);
+    std::vector<EndClass> classes;
+    core::Table bare;
+    bare.add_numbers("gap", "m", gap);
+    bare.add_numbers("heave_velocity", "m/s", starts.numbers("heave_velocity"));
+    const core::Table ends = ends_of_starts(model, bare, by_ratio, classes);
+    EXPECT_EQ(ends.text("class"), starts.text("class"));
+    double sum = 0;
+    for (const EndClass& end : region.classes) {
+        sum += end.fraction;
+        EXPECT_NEAR(end.fraction, reference.fraction(end.name), 2e-3) << end.name;
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_TRUE(region_figure(region).x.logarithmic);
+    EXPECT_FALSE(region_figure(reference).x.logarithmic);
+    const SafeSet safe = largest_safe_set(region, "A"), same = largest_safe_set(reference, "A");
+    EXPECT_NEAR(safe.box[0] * safe.box[1], same.box[0] * same.box[1], 0.1 * same.box[0] * same.box[1]);
+    const ProbabilityMap chances = probability_map(model, by_ratio, 2, 1);
+    EXPECT_NEAR(chances.area_mean, probability_map(model, even, 2, 1).area_mean, 2e-2);
+    EXPECT_TRUE(probability_figure(chances).maps.front().x_by_ratio);
+    by_ratio.axes[0].lower = 0;
+    EXPECT_THROW(stability_region(model, by_ratio), core::InputError);
+}
+
 TEST(Region, TheChanceToBeSafeSpreadsAboutTheBoundary) {
     core::Table table = test::ref_a_table();
     table.add_numbers("lift_force_sigma", "N", std::vector<double>(table.rows(), 1e-3));

@@ -9,6 +9,7 @@
 #include "cases/accept.h"
 #include "core/file.h"
 #include "studio/desktop/state/action_log.h"
+#include "studio/desktop/state/known_models.h"
 #include "studio/desktop/state/session_file.h"
 #include "tests/support/support.h"
 
@@ -70,9 +71,12 @@ std::vector<std::string> every_action() {
         "rows cases",
         "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
         "range.gap=clamp",
+        "measure tank model=" + (evie() / "heave" / "model.toml").string() + " data=" + (evie() / "heave").string() +
+            " channel=gap=rng_cm:cm clock=t_ms:ms",
         "add field " + (elsewhere() / "a.csv").string(),
         "read " + (elsewhere() / "a.csv").string() + " length_unit=mm unit.Pressure=kPa symmetry=y zones=hull*,base",
-        "fields view=speed-symmetry time=0.5s",
+        "fields view=speed-symmetry time=0.5s probe=10mm,0,2mm",
+        "read " + (elsewhere() / "a.csv").string() + " symmetry=y=0.1 density=998kg/m^3",
         "region glide show=estimator gap_noise=0.1mm velocity_noise=1mm/s drag_error=0.3",
         "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
         "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
@@ -248,6 +252,30 @@ TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
     }
 }
 
+// A slider over a number of the model does not read the file at each of its steps; a file that has changed is read.
+TEST(StudioActions, AModelIsReadOnceUntilItChanges) {
+    const core::TemporaryFolder folder;
+    for (const char* name : {"glide.toml", "forces.csv", "model.toml"}) {
+        fs::copy(evie() / name, folder.path() / name);
+    }
+    const fs::path file = folder.path() / "glide.toml";
+    const auto first = known_model(file);
+    const auto read = models_read();
+    EXPECT_EQ(known_model(file), first);
+    EXPECT_EQ(models_read(), read);
+    core::write_file(file, core::read_file(file) + "\n# changed\n");
+    EXPECT_NE(known_model(file), first);
+    EXPECT_EQ(models_read(), read + 1);
+    State state = opened();
+    state = applied(state, words_of("region glide set.vehicle.net_weight=0.2"), *evie_session());
+    const auto before = models_read();
+    for (int i = 0; i < 20; ++i) {
+        state =
+            applied(state, words_of("region glide set.vehicle.net_weight=0.2" + std::to_string(i)), *evie_session());
+    }
+    EXPECT_EQ(models_read(), before);
+}
+
 TEST(StudioActions, ADragIsOneStepAndOneLine) {
     History history(opened());
     std::vector<std::string> lines;
@@ -347,6 +375,26 @@ TEST(AcceptedModels, CountAsTheDeclaredOnesAndAreTakenBack) {
     EXPECT_EQ(state_from_json(nlohmann::json(accepted)), accepted);
     EXPECT_NE(command_of(accepted, words_of("accept 'heave test'"), *with).find("underbody study accept"),
               std::string::npos);
+}
+
+// The report may lie elsewhere: the store has the model that was found.
+TEST(AcceptedModels, NeedNoReportBesideTheStudy) {
+    const core::TemporaryFolder folder;
+    const Discovered found(folder.path());
+    const fs::path report = folder.path() / "report" / "discovery" / "heave test";
+    const std::string model = core::read_file(report / "model.toml");
+    const nlohmann::json files = {{"model.toml", model}, {"jet_lift.csv", core::read_file(report / "jet_lift.csv")}};
+    fs::remove_all(folder.path() / "report");
+    EXPECT_THROW(applied(found.state, words_of("accept 'heave test'"), *found.session), core::InputError);
+    auto stored = std::make_shared<Session>(*found.session);
+    stored->results.documents.emplace_back("found-model/heave test", files.dump());
+    const State accepted = applied(found.state, words_of("accept 'heave test'"), *stored);
+    const SessionPointer with = with_models(stored, accepted.accepted);
+    EXPECT_EQ(core::read_file(with->study.measurements.front().model), model);
+    EXPECT_NO_THROW(static_cast<void>(known_model(with->study.measurements.front().model)));
+    EXPECT_FALSE(fs::exists(folder.path() / "report")) << "looking writes nothing into the study";
+    cases::write_accepted(stored->study, cases::accept_model(stored->study, stored->results, "heave test"));
+    EXPECT_EQ(core::read_file(folder.path() / "models" / "heave test" / "model.toml"), model);
 }
 
 TEST(AcceptedModels, AreWrittenIntoTheStudyWhichKeepsItsComments) {
