@@ -70,7 +70,7 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
                           const dynamics::RecordReading& records = {});
 
 /// A linear filter over a run on its own uniform step: resampled where steps differ, started anew after gaps in time.
-/// Values beyond `gate` robust deviations from their neighbours are outliers and bridged.
+/// Outliers (dynamics::drop_outliers) are bridged.
 struct UniformRun {
     std::vector<double> time, gap, velocity, input;
     std::vector<bool> restart;

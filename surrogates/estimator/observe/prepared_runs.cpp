@@ -1,10 +1,10 @@
 #include "surrogates/estimator/observe/prepared_runs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::estimator {
@@ -192,32 +192,18 @@ double usual_step(const RunSignals& run) {
 
 namespace {
 
-// Measured values less outliers: a value far from the middle of its neighbours (Hampel's identifier).
-std::vector<std::size_t> good_samples(const std::vector<double>& time, const std::vector<double>& values,
-                                      UniformRun& out) {
-    std::vector<std::size_t> finite, good;
+// Measured values less outliers, by the rule of predictions and discovery.
+std::vector<std::size_t> good_samples(const std::vector<double>& time, std::vector<double> values, UniformRun& out) {
+    out.missing += static_cast<std::size_t>(
+        std::count_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }));
+    if (const double noise = dynamics::sensor_noise(time, values); noise > 0) {
+        out.outliers += dynamics::drop_outliers(values, noise);
+    }
+    std::vector<std::size_t> good;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isfinite(values[i])) {
-            finite.push_back(i);
-        } else {
-            ++out.missing;
+            good.push_back(i);
         }
-    }
-    const double noise = dynamics::sensor_noise(time, values);
-    for (std::size_t k = 0; k < finite.size(); ++k) {
-        if (k >= 2 && k + 2 < finite.size()) {
-            std::array<double, 5> near{};
-            for (std::size_t j = 0; j < 5; ++j) {
-                near[j] = values[finite[k + j - 2]];
-            }
-            const double spread = std::max(std::abs(near[0] - near[4]), 8 * noise);
-            std::nth_element(near.begin(), near.begin() + 2, near.end());
-            if (noise > 0 && std::abs(values[finite[k]] - near[2]) > spread) {
-                ++out.outliers;
-                continue;
-            }
-        }
-        good.push_back(finite[k]);
     }
     return good;
 }
