@@ -14,6 +14,22 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
+/// Cases as `sweep --list --json` has them.
+json listed(const std::string& output) { return json::parse(output).at("cases"); }
+
+bool all_past(const json& cases, int iteration) {
+    return std::all_of(cases.begin(), cases.end(), [&](const json& one) { return one.at("iteration") >= iteration; });
+}
+
+/// How often the solver began in a case: each time from another iteration.
+std::size_t starts(const fs::path& folder) {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(folder / "postProcessing" / "forces")) {
+        count += entry.is_directory() ? 1 : 0;
+    }
+    return count;
+}
+
 TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
     const std::string job = submit();
     ASSERT_FALSE(job.empty());
@@ -43,6 +59,9 @@ TEST_F(RealSlurm, AJobArrayMakesTheCasesOnceAndTheListFollowsIt) {
 TEST_F(RealSlurm, ACancelledJobFreesItsCasesForTheNext) {
     const std::string job = submit();
     ASSERT_TRUE(wait_for([&] { return count(states(), "running") == 2; })) << json(states());
+    ASSERT_TRUE(wait_for([&] {
+        return all_past(listed(run({"sweep", "study", "--list", "--json"}).output), 7);
+    })) << json(states());
     ASSERT_EQ(slurm("scancel", {job}).exit_code, 0);
     EXPECT_TRUE(wait_for([&] { return count(states(), "running") + count(states(), "waiting") == 0; }))
         << json(states());
@@ -50,6 +69,10 @@ TEST_F(RealSlurm, ACancelledJobFreesItsCasesForTheNext) {
     release();
     EXPECT_NE(submit(), job);
     expect_all_solved(2);
+    for (const auto& [name, state] : states()) {
+        EXPECT_EQ(meshed(name), 1U) << name;
+        EXPECT_EQ(starts(runs() / name), 2U) << name << " went on from its checkpoint";
+    }
 }
 
 TEST_F(RealSlurm, AKilledTaskIsMissingAgainAndTheOtherGoesOn) {
@@ -61,6 +84,21 @@ TEST_F(RealSlurm, AKilledTaskIsMissingAgainAndTheOtherGoesOn) {
     EXPECT_TRUE(wait_for([&] { return count(states(), "solved") == 1 && count(states(), "running") == 0; }))
         << json(states());
     EXPECT_EQ(count(states(), "waiting"), 0U);
+    submit();
+    expect_all_solved(2);
+}
+
+TEST_F(RealSlurm, ACaseThatFailsIsListedWithItsReasonAndTriedAgain) {
+    hook("if [ $i = 17 ]; then exit 1; fi");
+    const auto made = run({"sweep", "study", "--engine", "slurm", "--wait"});
+    EXPECT_EQ(made.exit_code, 3) << made.output << made.errors;
+    const json cases = listed(run({"sweep", "study", "--list", "--json"}).output);
+    ASSERT_EQ(cases.size(), 2U);
+    for (const auto& one : cases) {
+        EXPECT_EQ(one.at("state"), "failed");
+        EXPECT_THAT(one.at("reason").get<std::string>(), HasSubstr("simpleFoam")) << one;
+    }
+    hook("true");
     submit();
     expect_all_solved(2);
 }
@@ -112,15 +150,11 @@ TEST_F(RealSlurm, MoreCasesThanTheSiteTakesInOneArrayMakeSeveral) {
     EXPECT_THAT(elsewhere.errors, HasSubstr("invalid partition"));
 }
 
-/// Cases as `sweep --list --json` has them.
-json listed(const std::string& output) { return json::parse(output).at("cases"); }
-
 TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
     const std::string job = submit();
     // Checkpoints are written every five iterations; the stand-in says that each takes a second.
     ASSERT_TRUE(wait_for([&] {
-        const json cases = listed(run({"sweep", "study", "--list", "--json"}).output);
-        return std::all_of(cases.begin(), cases.end(), [](const json& one) { return one.at("iteration") >= 7; });
+        return all_past(listed(run({"sweep", "study", "--list", "--json"}).output), 7);
     })) << json(states());
     const json running = listed(run({"sweep", "study", "--list", "--json"}).output).at(0);
     EXPECT_EQ(running.at("iterations"), 40);
@@ -136,11 +170,7 @@ TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
     expect_all_solved(2);
     for (const auto& [name, state] : states()) {
         EXPECT_EQ(meshed(name), 1U) << name;
-        std::size_t starts = 0;
-        for (const auto& entry : fs::directory_iterator(runs() / name / "postProcessing" / "forces")) {
-            starts += entry.is_directory() ? 1 : 0;
-        }
-        EXPECT_EQ(starts, 2U) << name << " went on";
+        EXPECT_EQ(starts(runs() / name), 2U) << name << " went on";
     }
 }
 
