@@ -167,6 +167,33 @@ private:
         }
     }
 
+    /// Under its picture, which has its name as title.
+    std::string said_of_body(const std::string& name) {
+        const auto body = document("body/" + name);
+        return body ? shown(number_in(*body, "volume"), "m^3", "L", 4) + " L, buoyancy " +
+                          shown(number_in(*body, "buoyancy"), "N", "N", 4) + " N"
+                    : name;
+    }
+
+    /// What a reader must know stands there; how the curve was fitted is for those who ask.
+    void remarks(const std::vector<std::string>& all) {
+        std::vector<std::string> plain;
+        std::vector<std::vector<std::string>> of_the_fit;
+        for (const auto& remark : all) {
+            if (remark.starts_with("Gaussian process") || remark.starts_with("interpolated: leave-one-out")) {
+                of_the_fit.push_back({remark});
+            } else {
+                plain.push_back(remark);
+            }
+        }
+        if (!plain.empty()) {
+            page_.list(plain);
+        }
+        if (!of_the_fit.empty()) {
+            page_.folded_table("How it was fitted", {"remarks of the fit"}, of_the_fit);
+        }
+    }
+
     void bodies() {
         if (engine_.study.bodies.empty()) {
             return;
@@ -183,7 +210,7 @@ private:
                                 body->value("watertight", false) ? "yes" : "no"});
             }
             if (const auto* png = engine_.results.picture("body picture/" + spec.name)) {
-                pictures.push_back({*png, spec.name, "the body " + spec.name});
+                pictures.push_back({*png, said_of_body(spec.name), "the body " + spec.name});
             }
         }
         page_.pictures(pictures);
@@ -246,9 +273,7 @@ private:
                     page_.table(films.header, films.rows, films.caption);
                 }
             }
-            if (!table->remarks.empty()) {
-                page_.list(table->remarks);
-            }
+            remarks(table->remarks);
             for (const auto& file : table->exports) {
                 page_.link(file.file, "Controller table (" + file.format + "): " + file.file);
             }
@@ -291,9 +316,7 @@ private:
                 page_.table({"end of the motion", "kind", "share of the starts"}, rows,
                             std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
                                 core::format_number(spec.duration, 3) + " s of motion each.");
-                if (!region->remarks.empty()) {
-                    page_.list(region->remarks);
-                }
+                remarks(region->remarks);
                 page_.link("models/" + spec.name + "/model.toml",
                            "The model as a file for underbody simulate and region");
                 way_back("region/" + spec.name);

@@ -191,7 +191,7 @@ ReportTable films_at_equilibria(const Study& study, const StudyResults& results,
                                   number(point.stiffness, 3)});
         }
     }
-    films.header = {"gap (mm)", "", "squeeze damping (N s/m)", "added mass of the film (kg)",
+    films.header = {"gap (mm)", "kind", "squeeze damping (N s/m)", "added mass of the film (kg)",
                     "stiffness out of CFD (N/m)"};
     films.caption = "Thin-film theory for the base of '" + body + "' beside the CFD: " + squeeze.formula +
                     ". Steady CFD has neither; both hold where the gap is below a tenth of the half width, other gaps "

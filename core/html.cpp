@@ -40,7 +40,10 @@ void HtmlPage::paragraph(const std::string& text) { body_ += "<p>" + escape_html
 void HtmlPage::warning(const std::string& text) { body_ += "<p class=\"warning\">" + escape_html(text) + "</p>\n"; }
 
 void HtmlPage::facts(const std::vector<Fact>& facts) {
-    body_ += "<div class=\"facts\">";
+    // No row with one alone: six are two rows of three.
+    const std::size_t count = facts.size();
+    const std::size_t columns = count <= 5 ? count : count % 4 == 0 ? 4 : count % 3 == 0 ? 3 : count % 4 >= 2 ? 4 : 3;
+    body_ += "<div class=\"facts" + (count > 5 ? " of" + std::to_string(columns) : std::string()) + "\">";
     for (const auto& fact : facts) {
         body_ += "<div class=\"fact\"><span class=\"value\">" + escape_html(fact.value) +
                  "</span><span class=\"label\">" + escape_html(fact.label) + "</span></div>";

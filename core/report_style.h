@@ -60,6 +60,8 @@ nav.contents a:hover, nav.contents a:focus { text-decoration: underline; }
   padding: .55rem .9rem; border-radius: 0 .35rem .35rem 0; max-width: none;
 }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(10.5rem, 1fr)); gap: .75rem; margin: 1.1rem 0; }
+.facts.of3 { grid-template-columns: repeat(3, 1fr); }
+.facts.of4 { grid-template-columns: repeat(4, 1fr); }
 .fact { background: var(--tint); border-radius: .5rem; padding: .7rem .9rem; display: flex; flex-direction: column; }
 .fact .value { font-size: 1.35rem; font-weight: 650; line-height: 1.2; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
 .fact .label { color: var(--soft); font-size: .88rem; line-height: 1.35; margin-top: .15rem; }
@@ -94,7 +96,7 @@ footer { margin-top: 3rem; padding-top: .75rem; border-top: 1px solid var(--line
   h1 { font-size: 1.5rem; }
   h2 { font-size: 1.2rem; margin-top: 2.1rem; }
   table { font-size: .85rem; }
-  .facts { grid-template-columns: repeat(2, 1fr); gap: .5rem; }
+  .facts, .facts.of3, .facts.of4 { grid-template-columns: repeat(2, 1fr); gap: .5rem; }
   .fact .value { font-size: 1.1rem; }
 }
 @page { margin: 16mm 15mm; }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "core/text.h"
 #include "postproc/field/vector_math.h"
@@ -290,6 +291,12 @@ void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {
     if (range != options_.ranges.rend() && scene.range != range->second) {
         composed.of_range = " Colours on the scale given for all pictures.";
         scene.range = range->second;
+    }
+    // A pressure on a scale about zero has two colours, so that suction and pressure are told apart.
+    const bool about_zero = scene.range && scene.range->second > 0 &&
+                            std::abs(scene.range->first + scene.range->second) <= 1e-9 * scene.range->second;
+    if (about_zero && std::string_view(kind.array) == "pressure") {
+        scene.colours = ColourMap::diverging;
     }
     if (scene.range) {
         scene.range = drawn_range(*scene.range, scene.colours);

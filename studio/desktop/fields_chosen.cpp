@@ -237,7 +237,10 @@ void FieldsPanel::show_probe() {
         "probe", "values at a place",
         [this, cells, at = *at, key](core::Progress& progress) {
             Probed text;
-            text.all = QString("x %1, y %2, z %3 mm").arg(1000 * at[0]).arg(1000 * at[1]).arg(1000 * at[2]);
+            text.all = QString("x %1, y %2, z %3 mm, between the nodes of the nearest face")
+                           .arg(1000 * at[0])
+                           .arg(1000 * at[1])
+                           .arg(1000 * at[2]);
             text.shown = text.all;
             for (const auto& one : cells) {
                 const Probed own = values_at(*one.field, one.zones, at, one.coloured, progress);

@@ -216,7 +216,7 @@ void ForcePanel::show_table() {
                      .arg(qt(pretty_unit(unit)));
     }
     about_->setText(QString("<b>%1</b>, %2 through %3 points%4")
-                        .arg(qt(spec_.quantity))
+                        .arg(qt(spec_.quantity).replace('_', ' '))
                         .arg(qt(table_->kind()))
                         .arg(table_->points().rows())
                         .arg(range));

@@ -162,21 +162,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.scene = this;
     p.picker->SetTolerance(0.0005);
     p.picker->PickFromListOn();
-    p.on_press->SetClientData(&p);
-    p.on_press->SetCallback(
-        [](vtkObject*, unsigned long event, void* data, void*) { static_cast<Parts*>(data)->press(event); });
-    for (const auto event : {vtkCommand::LeftButtonPressEvent, vtkCommand::LeftButtonReleaseEvent,
-                             vtkCommand::RightButtonPressEvent, vtkCommand::RightButtonReleaseEvent}) {
-        p.window->GetInteractor()->AddObserver(event, p.on_press, 10.0F);  // before the style takes it
-    }
-    p.on_move->SetClientData(&p);
-    p.on_move->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
-        auto& parts = *static_cast<Parts*>(data);
-        if (!parts.button && parts.scene->on_hover && !parts.hover.isActive()) {
-            parts.hover.start();
-        }
-    });
-    p.window->GetInteractor()->AddObserver(vtkCommand::MouseMoveEvent, p.on_move);
+    p.widget->installEventFilter(&p);
     p.hover.setSingleShot(true);
     p.hover.setInterval(40);
     QObject::connect(&p.hover, &QTimer::timeout, [&p] { p.hover_now(); });
@@ -203,8 +189,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
 
 Scene::~Scene() {
     parts_->hover.stop();
-    parts_->window->GetInteractor()->RemoveObserver(parts_->on_press);
-    parts_->window->GetInteractor()->RemoveObserver(parts_->on_move);
+    parts_->widget->removeEventFilter(parts_.get());
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
 }
 

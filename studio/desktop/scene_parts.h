@@ -25,7 +25,7 @@
 
 namespace underbody::studio {
 
-struct Scene::Parts {
+struct Scene::Parts : QObject {
     QVTKOpenGLNativeWidget* widget = nullptr;
     vtkNew<vtkGenericOpenGLRenderWindow> window;
     vtkNew<vtkRenderer> renderer;
@@ -34,7 +34,6 @@ struct Scene::Parts {
     vtkNew<vtkAxesActor> axes;
     vtkNew<vtkOrientationMarkerWidget> marker;
     vtkNew<vtkCellPicker> picker;
-    vtkNew<vtkCallbackCommand> on_press;
     std::shared_ptr<const postproc::Field> field;
     struct Surface {
         std::size_t zone = 0;
@@ -50,18 +49,17 @@ struct Scene::Parts {
     postproc::MirrorPlane mirror;  ///< of the prepared sides
     Scene* scene = nullptr;
     vtkNew<vtkCallbackCommand> on_turn;
-    vtkNew<vtkCallbackCommand> on_move;
     QTimer hover;
     QPoint pressed;
-    bool button = false;
     std::vector<bool> tinted;
     vtkNew<vtkSphereSource> dot;
     vtkNew<vtkActor> dot_actor;
 
-    [[nodiscard]] QPoint mouse();
-    void press(unsigned long event);
+    QPoint mouse;
+    /// Clicks and the mouse over the view: while it turns, VTK's style keeps all events of the mouse to itself.
+    bool eventFilter(QObject* object, QEvent* event) override;
     void hover_now();
-    [[nodiscard]] std::optional<Picked> picked_at(int x, int y);
+    [[nodiscard]] std::optional<Picked> picked_at(const QPoint& place);
     [[nodiscard]] const postproc::ArrayInfo* info(const Surface& surface) const {
         return field->zones[surface.zone].find(choice.name);
     }

@@ -2,8 +2,9 @@
 #include <vtkCellData.h>
 #include <vtkPointData.h>
 #include <vtkProperty.h>
-#include <vtkRenderWindowInteractor.h>
 
+#include <QApplication>
+#include <QMouseEvent>
 #include <cmath>
 
 #include "studio/desktop/scene_parts.h"
@@ -35,44 +36,44 @@ vtkDataArray* array_of(const postproc::Zone& zone, const postproc::ArrayInfo& in
                                       : zone.surface->GetCellData()->GetArray(info.name.c_str());
 }
 
-QPoint Scene::Parts::mouse() {
-    const int* at = window->GetInteractor()->GetEventPosition();
-    return {at[0], at[1]};
-}
-
 /// A click is a press and a release at one place: between others the view was turned.
-void Scene::Parts::press(unsigned long event) {
-    const bool right = event == vtkCommand::RightButtonPressEvent || event == vtkCommand::RightButtonReleaseEvent;
-    if (event == vtkCommand::LeftButtonPressEvent || event == vtkCommand::RightButtonPressEvent) {
-        button = true;
-        pressed = mouse();
-        return;
-    }
-    button = false;
-    const auto& told = right ? scene->on_menu : scene->on_pick;
-    if (told && (mouse() - pressed).manhattanLength() <= 3) {
-        if (const auto found = picked_at(mouse().x(), mouse().y())) {
-            QTimer::singleShot(0, widget, [&told, found = *found] { told(found); });  // the event ends first
+bool Scene::Parts::eventFilter(QObject* object, QEvent* event) {
+    const auto type = event->type();
+    if (type == QEvent::MouseButtonPress || type == QEvent::MouseButtonRelease || type == QEvent::MouseMove) {
+        const auto* moved = static_cast<const QMouseEvent*>(event);
+        mouse = moved->pos();
+        if (type == QEvent::MouseButtonPress) {
+            pressed = mouse;
+        } else if (type == QEvent::MouseMove && moved->buttons() == Qt::NoButton && !hover.isActive()) {
+            hover.start();
+        }
+        const auto& told = moved->button() == Qt::RightButton ? scene->on_menu : scene->on_pick;
+        const bool click = type == QEvent::MouseButtonRelease && (mouse - pressed).manhattanLength() <= 3 &&
+                           (moved->button() == Qt::LeftButton || moved->button() == Qt::RightButton);
+        if (click && told) {
+            QTimer::singleShot(0, widget, [this, &told, place = mouse] {  // the style ends its turn first
+                if (const auto found = picked_at(place)) {
+                    told(*found);
+                }
+            });
         }
     }
+    return QObject::eventFilter(object, event);
 }
 
 void Scene::Parts::hover_now() {
-    if (!button && scene->on_hover) {
-        if (const auto found = picked_at(mouse().x(), mouse().y())) {
+    if (scene->on_hover && QApplication::mouseButtons() == Qt::NoButton) {
+        if (const auto found = picked_at(mouse)) {
             scene->on_hover(*found);
         }
     }
 }
 
-std::optional<Scene::Picked> Scene::pick(const QPoint& place) const {
-    const double ratio = parts_->widget->devicePixelRatioF();
-    return parts_->picked_at(static_cast<int>(place.x() * ratio),
-                             static_cast<int>((parts_->widget->height() - 1 - place.y()) * ratio));
-}
+std::optional<Scene::Picked> Scene::pick(const QPoint& place) const { return parts_->picked_at(place); }
 
-std::optional<Scene::Picked> Scene::Parts::picked_at(int x, int y) {
-    if (!field || picker->Pick(x, y, 0, renderer) == 0) {
+std::optional<Scene::Picked> Scene::Parts::picked_at(const QPoint& place) {
+    const double ratio = widget->devicePixelRatioF();
+    if (!field || picker->Pick(place.x() * ratio, (widget->height() - 1 - place.y()) * ratio, 0, renderer) == 0) {
         return {};
     }
     for (const auto& surface : surfaces) {

@@ -18,7 +18,7 @@ const QColor text_colour(40, 40, 40);
 /// Text as people write it: names of quantities without their underscores ("lift_force"; "C_L" stays).
 QString words(const std::string& text) {
     static const QRegularExpression underscore("(?<=[a-z][a-z])_(?=[a-z][a-z])");
-    return QString::fromStdString(text).replace(underscore, " ");
+    return QString::fromStdString(text).replace(underscore, " ").replace("+-", "±");
 }
 
 /// Numbers with a real minus sign and no leftover of rounding at zero.

@@ -148,6 +148,16 @@ TEST_F(Dropped, NothingIsWrittenBeforeItIsTakenIn) {
     EXPECT_EQ(window_->desk().state().workspace, "design");
 }
 
+// Names of effects and quantities are words in what people read.
+TEST(DiscoveryPage, HasNoNamesOfVariables) {
+    const QString page = discovery_page(R"json({"verdict": "effect", "sentence": "The model lacks coulomb_friction.",
+        "effects": [{"name": "coulomb_friction", "evidence": "told from linear_damping"}],
+        "depends_on": ["heave_velocity"], "next_experiment": "to tell coulomb_friction (next-experiment.csv)"})json");
+    EXPECT_FALSE(page.contains('_')) << page.toStdString();
+    EXPECT_TRUE(page.contains("The model lacks coulomb friction."));
+    EXPECT_TRUE(page.contains("next-experiment.csv"));
+}
+
 // Without a study there is no model to judge by: a sentence, and no sheet.
 TEST_F(Dropped, ALogWithoutAStudyIsASentence) {
     write_flight(folder_.path() / "flight.csv");

@@ -13,13 +13,16 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QElapsedTimer>
+#include <QEventLoop>
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenuBar>
 #include <QSlider>
 #include <QTableWidget>
 #include <QTest>
+#include <cmath>
 #include <random>
+#include <thread>
 
 #include "core/text.h"
 #include "geometry/body/body_report.h"
@@ -33,6 +36,7 @@
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/study_tree.h"
+#include "studio/figures/render.h"
 #include "surrogates/tables/fit/force_table.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -409,6 +413,42 @@ private:
     }
     double last_ = 0, longest_ = 0;
 };
+
+double thread_time() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Figures of a study that is computed are painted and encoded beside the window, which only lays them out; the bytes
+// are the same.
+TEST_F(Window, FiguresAreEncodedBesideTheWindow) {
+    core::Figure figure;
+    figure.title = "lift over gap";
+    figure.x = {"gap", "mm"};
+    figure.y = {"lift force", "N"};
+    core::FigureCurve curve{"lift", {}, {}, core::palette(0)};
+    for (int i = 0; i < 400; ++i) {
+        curve.x.push_back(i);
+        curve.y.push_back(std::sin(0.05 * i));
+    }
+    figure.curves.push_back(curve);
+    const std::string here = render_png(figure);
+    std::string there;
+    double work = 0;
+    QEventLoop loop;
+    const double before = thread_time();
+    std::thread worker([&] {
+        there = render_png(figure);
+        work = thread_time();
+        QMetaObject::invokeMethod(&loop, &QEventLoop::quit, Qt::QueuedConnection);
+    });
+    loop.exec();
+    const double window = thread_time() - before;
+    worker.join();
+    EXPECT_EQ(there, here);
+    EXPECT_LT(window, work);
+}
 
 // A seeded monkey: any action at any time, also nonsense and damaged files; then all is taken back.
 TEST_F(Window, AMonkeyBreaksNothing) {
