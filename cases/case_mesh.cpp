@@ -38,6 +38,16 @@ CaseMesh read_case_mesh(const core::TomlTable& table, CaseMesh usual) {
     mesh.surface_level = static_cast<int>(table.integer_or("surface_level", mesh.surface_level));
     mesh.layers = static_cast<int>(table.integer_or("layers", mesh.layers));
     mesh.iterations = static_cast<int>(table.integer_or("iterations", mesh.iterations));
+    const auto at_least = [&](const char* key, double value, double least) {
+        if (table.has(key) && !(value >= least)) {
+            throw core::InputError("range", table.path_of(key) + " is " + core::format_number(value), table.place(key),
+                                   "the nearest allowed value: " + core::format_number(least));
+        }
+    };
+    at_least("cell", mesh.cell, 0.01);
+    at_least("surface_level", mesh.surface_level, 0);
+    at_least("layers", mesh.layers, 0);
+    at_least("iterations", mesh.iterations, 0);
     return mesh;
 }
 

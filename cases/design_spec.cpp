@@ -35,7 +35,65 @@ std::vector<double> one_or_more(const TomlTable& table, const char* key, const c
     if (values.empty()) {
         throw core::InputError("empty", table.path_of(key) + " is empty", table.place(key));
     }
+    const bool is_angle = std::string_view(unit) == "rad";
+    for (const double value : values) {
+        if (is_angle ? std::abs(value) >= std::numbers::pi / 2 : value <= 0) {
+            throw core::InputError("range",
+                                   table.path_of(key) + " is " + geometry::shown_value(value, unit, 6) +
+                                       (is_angle ? ": it must lie within +-90 deg" : ": it must be above zero"),
+                                   table.place(key));
+        }
+    }
     return values;
+}
+
+std::vector<std::string> quantities_of(const TomlTable& design) {
+    if (!design.has("quantities")) {
+        return {"lift_force", "drag_force", "pitch_moment"};
+    }
+    const auto is_load = [](const std::string& q) {
+        return (q.ends_with("_force") || q.ends_with("_moment") || q == "pitch_moment_at_buoyancy") &&
+               !q.starts_with("input_");
+    };
+    const std::vector<std::string> quantities = design.strings("quantities");
+    std::set<std::string> seen;
+    for (const std::string& q : quantities) {
+        if (core::find_quantity(q) == nullptr || !is_load(q)) {
+            throw core::InputError("quantity", design.path_of("quantities") + ": there is no load '" + q + "'",
+                                   design.place("quantities"),
+                                   core::did_you_mean(q, {"lift_force", "drag_force", "side_force", "pitch_moment",
+                                                          "pitch_moment_at_buoyancy", "roll_moment", "yaw_moment"}));
+        }
+        if (!seen.insert(q).second) {
+            throw core::InputError("name", design.path_of("quantities") + " says " + q + " twice",
+                                   design.place("quantities"));
+        }
+    }
+    if (quantities.empty()) {
+        throw core::InputError("empty", design.path_of("quantities") + " is empty", design.place("quantities"),
+                               "quantities = [\"lift_force\", \"pitch_moment\"]");
+    }
+    return quantities;
+}
+
+FidelitySpec fidelity_from(const TomlTable& table) {
+    FidelitySpec f;
+    f.name = table.string("name");
+    if (f.name.empty() || f.name == "." || f.name == ".." || f.name.find('/') != std::string::npos) {
+        throw core::InputError("name", table.path_of("name") + ": '" + f.name + "' is no name of a folder",
+                               table.place("name"), "name = \"coarse\"");
+    }
+    const auto& densities = geometry::density_names();
+    if (std::find(densities.begin(), densities.end(), f.name) != densities.end()) {
+        f.mesh.density = f.name;
+    }
+    f.mesh = read_case_mesh(table, f.mesh);
+    f.cost = table.quantity_or("cost", "s", 1);
+    if (!(f.cost > 0)) {
+        throw core::InputError("range", table.path_of("cost") + " must be above zero", table.place("cost"),
+                               "cost = \"120 s\"");
+    }
+    return f;
 }
 
 tables::SearchVariable variable_from(const TomlTable& table) {
@@ -224,14 +282,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
         throw core::InputError("range", design.path_of("kinematic_viscosity") + " must be above zero",
                                design.place("kinematic_viscosity"), "kinematic_viscosity = \"1.0e-6 m^2/s\"");
     }
-    spec.quantities = design.has("quantities") ? design.strings("quantities")
-                                               : std::vector<std::string>{"lift_force", "drag_force", "pitch_moment"};
-    for (const std::string& q : spec.quantities) {
-        if (core::find_quantity(q) == nullptr) {
-            throw core::InputError("quantity", design.path_of("quantities") + ": there is no quantity " + q,
-                                   design.place("quantities"), "underbody list quantities");
-        }
-    }
+    spec.quantities = quantities_of(design);
     std::set<std::string> varied, tied;
     for (const TomlTable& table : design.tables("vary")) {
         spec.variables.push_back(variable_from(table));
@@ -256,14 +307,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     }
     std::set<std::string> names;
     for (const TomlTable& table : design.tables("fidelity")) {
-        FidelitySpec f;
-        f.name = table.string("name");
-        const auto& densities = geometry::density_names();
-        if (std::find(densities.begin(), densities.end(), f.name) != densities.end()) {
-            f.mesh.density = f.name;
-        }
-        f.mesh = read_case_mesh(table, f.mesh);
-        f.cost = table.quantity_or("cost", "s", 1);
+        const FidelitySpec f = fidelity_from(table);
         if (!names.insert(f.name).second) {
             throw core::InputError("name", table.path_of("name") + ": there are two fidelities " + f.name,
                                    table.place("name"));
@@ -382,22 +426,6 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
     }
     geometry::check(shape);
     return shape;
-}
-
-bool limits_volume(const DesignSpec& spec) { return spec.least_volume > 0 || spec.most_volume < 1e299; }
-
-std::string volume_fault(const DesignSpec& spec, const geometry::BodyShape& shape) {
-    if (!limits_volume(spec)) {
-        return {};
-    }
-    const double volume = geometry::ExactBody(shape).volume();
-    const bool small = volume < spec.least_volume;
-    if (!small && volume <= spec.most_volume) {
-        return {};
-    }
-    return "it has " + core::format_number(1e3 * volume, 4) + " L and design.volume wants at " +
-           (small ? "least " : "most ") + core::format_number(1e3 * (small ? spec.least_volume : spec.most_volume), 4) +
-           " L";
 }
 
 double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {

@@ -168,14 +168,11 @@ ExactBody::Spine ExactBody::solved_spine(double t) const {
         nz = z / c2 / m;
         const double f = z - r * nz - r + depth_;
         (f < 0 ? low : high) = z;
-        double next = z - f / std::max(0.1, 1 - r * h2 / (c2 * m2 * m));
-        if (!(next > low && next < high)) {
-            next = 0.5 * (low + high);
+        const double step = f / std::max(0.1, 1 - r * h2 / (c2 * m2 * m));
+        if (std::abs(step) < 4e-16 * c_) {
+            break;  // before the bracket, whose end z is
         }
-        if (std::abs(next - z) < 1e-16 * c_) {
-            break;
-        }
-        z = next;
+        z = z - step > low && z - step < high ? z - step : 0.5 * (low + high);
     }
     const double s = std::sqrt(1 - square(z / c_));
     const double nh = std::sqrt(std::max(0.0, 1 - nz * nz));

@@ -445,6 +445,16 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
                 testing::HasSubstr("a gap of 50 mm, and [design] computes 3 mm to 10 mm"));
     EXPECT_THAT(refused("slope_along = \"pitch\"", "slope_along = \"pitch\"\nhalf_width = \"2 deg\""),
                 testing::HasSubstr("0 deg +- 2 deg"));
+    EXPECT_THAT(refused("\"3 mm\", \"5 mm\"", "\"-3 mm\", \"5 mm\""),
+                testing::HasSubstr("-3 mm: it must be above zero"));
+    EXPECT_THAT(refused("\"-1 deg\", \"1 deg\"", "\"-1 deg\", \"90 deg\""), testing::HasSubstr("within +-90 deg"));
+    EXPECT_THAT(refused("points = 16", "speed = 0"), testing::HasSubstr("design.speed"));
+    EXPECT_THAT(refused("quantities = [\"lift_force\"", "quantities = [\"gap\""),
+                testing::HasSubstr("there is no load 'gap'"));
+    EXPECT_THAT(refused("\"pitch_moment\"]", "\"lift_force\"]"), testing::HasSubstr("twice"));
+    EXPECT_THAT(refused("name = \"coarse\"", "name = \"a/../b\""), testing::HasSubstr("no name of a folder"));
+    EXPECT_THAT(refused("cost = \"40 s\"", "cost = \"-40 s\""), testing::HasSubstr("cost must be above zero"));
+    EXPECT_THAT(refused("cell = 0.25", "iterations = -1"), testing::HasSubstr("iterations is -1"));
 }
 
 TEST_F(DesignFiles, TheOnlyValueOfAConditionMayBeSaid) {

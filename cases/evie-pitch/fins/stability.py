@@ -17,8 +17,9 @@ import subprocess
 
 here = os.path.dirname(os.path.abspath(__file__))
 AFT = 17.8  # mm, from the centre of buoyancy to the centre of the base (`underbody body trimmed-fins.toml`)
-# Errors of a point. Draft: of the lift half of what draft and coarse differ by at 5 mm and 1 degree, of the moment what they do. Medium: the error of its means,
-# which know their correlation, and at 3 and 10 mm, where it was not run, half of what it changes at 5 mm as well.
+# Errors of a point. Draft: of the lift half of what draft and coarse differ by at 5 mm and 1 degree, of the moment what they
+# do. Medium: the error of its means, which know their correlation; at 3 and 10 mm, where it was not run, half of what it changes
+# at 5 mm as well.
 DRAFT_ERROR = {"lift": 0.09, "moment": 0.1}
 MEDIUM_ERROR = {"lift": 0.01, "moment": 0.3}
 MEDIUM = {-1: {"lift": 0.79, "moment": 4.0}, 1: {"lift": 1.06, "moment": 3.3}}  # README.md: means over iterations 200 to 800

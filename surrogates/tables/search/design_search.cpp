@@ -339,24 +339,32 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
             low[v] = std::max(0.0, centre[v] - options.region->length / 2);
             high[v] = std::min(1.0, centre[v] + options.region->length / 2);
         }
-        const auto acquisition = [&](std::span<const double> u) {
+        // Surrogates are cheaper than shapes: known limits are asked of those that would be chosen.
+        DesignSearch unlimited = search;
+        unlimited.problem_.known_limits.clear();
+        const auto value_by = [&](const DesignSearch& by, std::span<const double> u) {
             const std::vector<double> x = unscaled(u);
-            const double value = taken.holds(x) ? -infinity : search.log_acquisition(x, best, options, nullptr);
+            const double value = taken.holds(x) ? -infinity : by.log_acquisition(x, best, options, nullptr);
             return std::isfinite(value) ? value : -1e10;
         };
+        const auto acquisition = [&](std::span<const double> u) { return value_by(search, u); };
         std::vector<std::pair<double, std::vector<double>>> tried;
         const std::size_t candidates = std::min<std::size_t>(4000, 500 * axes);
         for (std::vector<double>& u : sobol_plan(candidates, axes, options.seed + batch.size())) {
             for (std::size_t v = 0; v < axes; ++v) {
                 u[v] = low[v] + u[v] * (high[v] - low[v]);
             }
-            const double value = acquisition(u);
+            const double value = value_by(unlimited, u);
             tried.emplace_back(value, std::move(u));
         }
-        const std::size_t refined = std::min<std::size_t>(6, tried.size());
-        std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined), tried.end(),
-                          [](const auto& a, const auto& b) { return a.first > b.first; });
-        if (tried.front().first <= -1e10) {
+        std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+        std::size_t refined = 0;
+        for (std::size_t i = 0; i < tried.size() && refined < 6 && tried[i].first > -1e10; ++i) {
+            if (search.known_limits_hold(unscaled(tried[i].second))) {
+                std::swap(tried[refined++], tried[i]);
+            }
+        }
+        if (refined == 0) {
             break;  // no further design meets the known limits
         }
         for (std::size_t i = 0; i < refined; ++i) {
