@@ -106,9 +106,12 @@ ${about}
 Static libraries, headers and a CMake package: find_package(Underbody).")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libvtk9-dev, libvtk9-qt-dev, libeigen3-dev, libcgal-dev, libopenmesh-dev, \
-libudunits2-dev, nlohmann-json3-dev, libhdf5-dev, libcgns-dev, libmatio-dev, libsqlitecpp-dev, libsqlite3-dev, \
-libsundials-dev, libnlopt-dev, libnlopt-cxx-dev, libtbb-dev, libxxhash-dev, zlib1g-dev, liblapack-dev, pkg-config")
+# What UnderbodyDependencies.cmake looks for: the libraries that the project itself is built with.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/debian-packages.txt)
+file(STRINGS ${CMAKE_SOURCE_DIR}/cmake/debian-packages.txt libraries REGEX "^(pkg-config|[a-z0-9.+-]+-dev)$")
+list(FILTER libraries EXCLUDE REGEX "gtest|gmock|benchmark|pybind|python|cli11|dpkg")
+list(JOIN libraries ", " libraries)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${libraries}")
 
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "ground-effect CFD studies, the Python module
 ${about}
