@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/heading.h"
+#include "core/mistyped.h"
 #include "core/own_files.h"
 #include "core/text.h"
 #include "core/toml.h"
@@ -54,8 +55,37 @@ std::vector<Heading> headings_of(const fs::path& file) {
     return {};
 }
 
-/// How headings of logs begin that people write.
-constexpr const char* measured_words[] = {"time", "t_", "stamp", "rng", "range", "dist", "gap"};
+/// "cm" of "rng_cm"; empty where no unit ends the name.
+std::string unit_in_name(const std::string& name) {
+    const auto bar = name.rfind('_');
+    const std::string end = bar == std::string::npos ? "" : name.substr(bar + 1);
+    return core::is_unit(end) ? end : "";
+}
+
+/// The quantity that a log's heading probably stands for, by the words that tables are read with and by those that
+/// loggers begin with: "rng_cm", "Ride height (mm)", "t_us", "stamp". Empty: none that is known.
+std::string meant_by(const std::string& field, const std::string& unit) {
+    const std::string name = core::plain_name(field);
+    const std::string own = unit.empty() ? unit_in_name(name) : "";
+    const std::string word = own.empty() ? name : name.substr(0, name.size() - own.size() - 1);
+    if (core::find_quantity(word) != nullptr) {
+        return word;
+    }
+    const std::string any = unit.empty() ? own : unit;
+    if (const std::string other = core::other_name_of(word, core::Likeness::possible, any); !other.empty()) {
+        return word.size() > 1 || !own.empty() ? other : "";  // "T", "h" alone say too little
+    }
+    constexpr std::pair<const char*, const char*> beginnings[] = {{"time", "time"}, {"t_", "time"},   {"stamp", "time"},
+                                                                  {"rng", "gap"},   {"range", "gap"}, {"dist", "gap"},
+                                                                  {"gap", "gap"},   {"height", "gap"}};
+    for (const auto& [begin, quantity] : beginnings) {
+        if (name.starts_with(begin) &&
+            (any.empty() || core::same_dimension(any, core::find_quantity(quantity)->unit))) {
+            return quantity;
+        }
+    }
+    return {};
+}
 
 bool is_log(const fs::path& path) { return !dynamics::log_format(path).empty(); }
 
@@ -66,10 +96,8 @@ bool is_table(const fs::path& path) {
     }
     const auto headings = headings_of(path);
     return std::any_of(headings.begin(), headings.end(), [](const Heading& one) {
-        const std::string name = core::lower_case(one.name);
-        const bool begins = std::any_of(std::begin(measured_words), std::end(measured_words),
-                                        [&](const char* word) { return name.starts_with(word); });
-        return begins || core::find_quantity(one.name) != nullptr;
+        const std::string meant = meant_by(one.name, one.unit.value_or(""));
+        return meant == "time" || meant == "gap" || core::find_quantity(one.name) != nullptr;
     });
 }
 
@@ -164,12 +192,7 @@ MeasuredChannel measured_channel(const std::string& text) {
     }
     channel.quantity = core::trimmed(std::string_view(text).substr(0, equal));
     if (core::find_quantity(channel.quantity) == nullptr) {
-        std::vector<std::string> known;
-        for (const auto& quantity : core::quantity_names()) {
-            known.push_back(quantity.name);
-        }
-        throw core::UsageError("name", "there is no quantity '" + channel.quantity + "'", {},
-                               core::did_you_mean(channel.quantity, known));
+        throw core::UsageError("name", core::no_quantity(channel.quantity), {}, core::quantity_hint(channel.quantity));
     }
     std::string field = text.substr(equal + 1);
     if (const auto colon = field.rfind(':'); colon != std::string::npos && core::is_unit(field.substr(colon + 1))) {
@@ -231,36 +254,20 @@ std::vector<MeasuredField> measured_fields(const fs::path& file, core::Progress&
     return fields;
 }
 
-namespace {
-
-/// "cm" of "rng_cm", where that is a unit of the dimension of `like`; else empty.
-std::string unit_in_name(const std::string& name, const char* like) {
-    const auto bar = name.rfind('_');
-    const std::string end = bar == std::string::npos ? "" : name.substr(bar + 1);
-    return core::is_unit(end) && core::same_dimension(end, like) ? end : "";
-}
-
-bool begins_with_any(const std::string& name, std::initializer_list<const char*> words) {
-    return std::any_of(words.begin(), words.end(), [&](const char* word) { return name.starts_with(word); });
-}
-
-}  // namespace
-
 std::vector<MeasuredChannel> guessed_channels(const std::vector<MeasuredField>& fields) {
     const std::set<std::string> ranges = {"range", "Dist", "current_distance", "distance"};
-    for (const auto& one : fields) {
-        if (one.message.empty() && one.field == "gap") {
-            return {};  // the headings are the program's own
-        }
+    const auto own = std::find_if(fields.begin(), fields.end(),
+                                  [](const auto& one) { return one.message.empty() && one.field == "gap"; });
+    if (own != fields.end()) {  // the program's own heading: only its unit may be wanting
+        return own->unit.empty() ? std::vector<MeasuredChannel>{{"gap", "", "gap", ""}}
+                                 : std::vector<MeasuredChannel>{};
     }
     for (const auto& one : fields) {
-        const std::string name = core::lower_case(one.field);
-        const std::string unit = one.unit.empty() ? unit_in_name(name, "m") : "";
         if (!one.message.empty() && ranges.contains(one.field)) {
             return {{"gap", one.message, one.field, one.unit.empty() ? "m" : ""}};
         }
-        if (one.message.empty() && begins_with_any(name, {"gap", "rng", "range", "dist", "height"})) {
-            return {{"gap", "", one.field, unit}};
+        if (one.message.empty() && meant_by(one.field, one.unit) == "gap") {
+            return {{"gap", "", one.field, one.unit.empty() ? unit_in_name(core::plain_name(one.field)) : ""}};
         }
     }
     return {};
@@ -269,12 +276,11 @@ std::vector<MeasuredChannel> guessed_channels(const std::vector<MeasuredField>& 
 std::string guessed_clock(const std::vector<MeasuredField>& fields) {
     std::string found;
     for (const auto& one : fields) {
-        const std::string name = core::lower_case(one.field);
         if (!one.message.empty() || one.field == "time") {
             return {};
         }
-        if (found.empty() && begins_with_any(name, {"time", "t_", "stamp"})) {
-            const std::string unit = one.unit.empty() ? unit_in_name(name, "s") : "";
+        if (found.empty() && meant_by(one.field, one.unit) == "time") {
+            const std::string unit = one.unit.empty() ? unit_in_name(core::plain_name(one.field)) : "";
             found = one.field + (unit.empty() ? "" : ":" + unit);
         }
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 #include <vector>
 
 #include "core/text.h"
@@ -9,18 +10,42 @@
 
 namespace underbody::core {
 
-std::string mistyped_quantity(const std::string& name) {
-    if (find_quantity(name) != nullptr) {
-        return {};
-    }
+namespace {
+
+std::vector<std::string> all_quantities() {
     std::vector<std::string> known;
     for (const auto& quantity : quantity_names()) {
         known.push_back(quantity.name);
     }
-    return nearest_name(name, known);
+    return known;
 }
 
+}  // namespace
+
+std::string mistyped_quantity(const std::string& name) {
+    return find_quantity(name) != nullptr ? std::string() : nearest_name(name, all_quantities());
+}
+
+std::string no_quantity(const std::string& name) { return "there is no quantity '" + name + "'"; }
+
+std::string quantity_hint(const std::string& name) { return did_you_mean(name, all_quantities()); }
+
 namespace {
+
+constexpr std::string_view sigma_ending = "_sigma";
+
+/// The name without the ending of a standard deviation.
+std::string without_sigma(const std::string& name) {
+    return name.ends_with(sigma_ending) ? name.substr(0, name.size() - sigma_ending.size()) : name;
+}
+
+/// "sgima", "std": what stands behind a quantity's name where "sigma" should.
+bool means_sigma(const std::string& ending) {
+    static const std::vector<std::string> words = {"sd",  "std", "stdev", "stddev",
+                                                   "dev", "err", "error", "uncertainty"};
+    return std::find(words.begin(), words.end(), ending) != words.end() ||
+           (ending.size() >= 4 && !nearest_name(ending, {"sigma"}).empty());
+}
 
 /// "Gap (mm)" -> {"gap"}, "force_in" -> {"force", "in"}; what stands in round brackets is no part of the name.
 std::vector<std::string> words_of(const std::string& name) {
@@ -173,14 +198,32 @@ std::string meant_quantity(const Column& column, Likeness likeness) {
                : meant;
 }
 
-std::string heading_for(const Column& column, const std::string& quantity) {
-    std::string unit = column.is_text() ? find_quantity(quantity)->unit : column.written_unit;
+std::string meant_name(const Column& column, Likeness likeness) {
+    if (const std::string base = without_sigma(column.name); base != column.name) {
+        Column of_base = column;
+        of_base.name = base;
+        const std::string meant = meant_quantity(of_base, likeness);
+        return meant.empty() ? meant : meant + std::string(sigma_ending);
+    }
+    const std::string plain = plain_name(column.name);
+    for (const auto& quantity : quantity_names()) {
+        const std::string before = std::string(quantity.name) + "_";
+        if (plain.starts_with(before) && means_sigma(plain.substr(before.size())) &&
+            (column.is_text() || same_dimension(column.unit, quantity.unit))) {
+            return before + std::string(sigma_ending.substr(1));
+        }
+    }
+    return meant_quantity(column, likeness);
+}
+
+std::string heading_for(const Column& column, const std::string& name) {
+    std::string unit = column.is_text() ? find_quantity(without_sigma(name))->unit : column.written_unit;
     const std::size_t open = column.name.find('('), close = column.name.find(')');
     if (column.is_text() && open != std::string::npos && close != std::string::npos && close > open) {
         const std::string bracketed(trimmed(column.name.substr(open + 1, close - open - 1)));
         unit = is_unit(bracketed) ? bracketed : unit;
     }
-    return "'" + quantity + " [" + unit + "]'";
+    return "'" + name + " [" + unit + "]'";
 }
 
 }  // namespace underbody::core

@@ -11,6 +11,11 @@ namespace underbody::core {
 /// when the name is one of them, or is like none of them and may be a name of the user's own.
 std::string mistyped_quantity(const std::string& name);
 
+/// "there is no quantity 'sped'": what is said of a name that should be one of `quantity_names()`, and the hint that
+/// belongs to it: the nearest one, or all.
+std::string no_quantity(const std::string& name);
+std::string quantity_hint(const std::string& name);
+
 /// How sure it is that a word which is no quantity's name stands for one.
 enum class Likeness {
     certain,   ///< "ride_height", "inlet_velocity": taken as said
@@ -30,7 +35,11 @@ std::string other_name_of(const std::string& word, Likeness likeness, const std:
 /// and for a name that is like none of them. A column without a unit counts when all its fields are numbers.
 std::string meant_quantity(const Column& column, Likeness likeness = Likeness::usual);
 
-/// "name it 'gap [mm]'": the heading that the column of that quantity needs.
-std::string heading_for(const Column& column, const std::string& quantity);
+/// meant_quantity(), and of standard deviations the same with the ending "_sigma": "lift_froce_sigma [N]",
+/// "lift_force_sgima [N]", "lift_force_std [N]" were meant for "lift_force_sigma".
+std::string meant_name(const Column& column, Likeness likeness = Likeness::usual);
+
+/// "'gap [mm]'": the heading that the column of that quantity, or of its standard deviation, needs.
+std::string heading_for(const Column& column, const std::string& name);
 
 }  // namespace underbody::core

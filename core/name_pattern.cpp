@@ -34,7 +34,7 @@ Part braced(const std::string& inside, const std::string& pattern) {
     }
     part.unit = std::string(trimmed(inside.substr(colon + 1)));
     if (const std::string meant = mistyped_quantity(part.value); !meant.empty()) {
-        throw UsageError("name", "{" + inside + "} in the pattern: there is no quantity '" + part.value + "'", {},
+        throw UsageError("name", "{" + inside + "} in the pattern: " + no_quantity(part.value), {},
                          "did you mean '" + meant + "'?");
     }
     try {
@@ -148,17 +148,17 @@ std::vector<NamePattern::Found> NamePattern::files_and_folders(const fs::path& r
     return files_of(parts_, root, true);
 }
 
-std::vector<fs::path> NamePattern::near_misses(const fs::path& root) const {
+std::vector<fs::path> NamePattern::near_misses(const fs::path& root, bool folders) const {
     std::vector<Part> loose = parts_;
     for (auto& part : loose) {
         part.kind = part.kind == Part::Kind::number ? Part::Kind::text : part.kind;
     }
     std::unordered_set<std::string> taken;
-    for (const auto& found : files(root)) {
+    for (const auto& found : files_of(parts_, root, folders)) {
         taken.insert(found.path.string());
     }
     std::vector<fs::path> missed;
-    for (const auto& found : files_of(loose, root)) {
+    for (const auto& found : files_of(loose, root, folders)) {
         if (!taken.contains(found.path.string())) {
             missed.push_back(found.path);
         }

@@ -37,9 +37,10 @@ public:
     /// The same, with the folders that fit.
     [[nodiscard]] std::vector<Found> files_and_folders(const std::filesystem::path& root = ".") const;
 
-    /// Files that would fit if every `{name:unit}` took any text ("run-h5O.csv", "run-h10-old.csv"), by name: what
-    /// `files` passes over is seldom meant to be left out.
-    [[nodiscard]] std::vector<std::filesystem::path> near_misses(const std::filesystem::path& root = ".") const;
+    /// Files (and, when asked for, folders) that would fit if every `{name:unit}` took any text ("run-h5O.csv",
+    /// "run-h10-old.csv"), by name: what `files` passes over is seldom meant to be left out.
+    [[nodiscard]] std::vector<std::filesystem::path> near_misses(const std::filesystem::path& root = ".",
+                                                                 bool folders = false) const;
 
     /// Why a near miss does not fit: "'5mm' is no number: write {gap:mm}mm where the names carry the unit".
     [[nodiscard]] std::string why_not(const std::filesystem::path& path, const std::filesystem::path& root = ".") const;

@@ -132,11 +132,11 @@ public:
     Settled verdict() {
         std::vector<std::string> faults = not_finite_;
         find_units_of_swings();
-        for (const auto& load : settled_.loads) {
+        for (auto& load : settled_.loads) {
             const double of_load = scale_of(load);
-            const std::string fault = of_load > 0 ? fault_of(load.scatter, of_load, settled_.transient) : "";
-            if (!fault.empty()) {
-                faults.push_back(load.quantity + " " + fault);
+            load.fault = of_load > 0 ? fault_of(load.scatter, of_load, settled_.transient) : "";
+            if (!load.fault.empty()) {
+                faults.push_back(load.quantity + " " + load.fault);
             }
         }
         const auto high = highest_residual();
@@ -355,6 +355,10 @@ void to_json(nlohmann::json& json, const Settled& settled) {
         json["loads"][load.quantity] = load.scatter;
         json["loads"][load.quantity]["file"] = load.file;
         json["loads"][load.quantity]["sigma"] = load.sigma;
+        // What the verdict rests on; that of the scatter alone knows neither the force nor what of it may scatter.
+        json["loads"][load.quantity]["stationary"] = load.scatter.settled;
+        json["loads"][load.quantity]["settled"] = load.fault.empty();
+        json["loads"][load.quantity]["why_not"] = load.fault;
     }
     for (const auto& level : settled.residuals) {
         json["residuals"].push_back(

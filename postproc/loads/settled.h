@@ -38,7 +38,8 @@ struct LoadHistory {
     std::string quantity;  ///< lift_force, ...
     std::string file;
     IterationScatter scatter;  ///< in the history's own units
-    double sigma = 0;  ///< N or N m, of the whole body: one standard uncertainty of the field's value by iteration
+    double sigma = 0;     ///< N or N m, of the whole body: one standard uncertainty of the field's value by iteration
+    std::string fault{};  ///< why it has not settled; empty when it has
 };
 
 struct ResidualLevel {

@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/table.h"
 #include "core/table_rows.h"
@@ -156,7 +157,7 @@ int sweep_shapes(const SweepArguments& given, Shell& shell) {
         shell.print(core::write_csv(table));
     } else {
         const std::string within = given.where.empty() ? "" : ", " + std::to_string(kept.size()) + " within --where";
-        shell.print(std::to_string(made.size()) + " shapes: " + std::to_string(made.size() - refused - equal) +
+        shell.print(core::counted(made.size(), "shape") + ": " + std::to_string(made.size() - refused - equal) +
                     " made, " + std::to_string(equal) + " equal to an earlier one, " + std::to_string(refused) +
                     " refused" + within + "; " + out + "/shapes.csv, sheet.png");
     }

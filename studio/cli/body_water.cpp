@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/table.h"
 #include "core/units.h"
 #include "geometry/cases/flow_domain.h"
@@ -85,7 +86,7 @@ int added_mass_table(const AddedMassCommand& o, Shell& shell) {
     } else if (o.out.empty()) {
         shell.print(core::write_csv(table));
     } else {
-        shell.print(o.out + ": " + std::to_string(table.rows()) + " gaps");
+        shell.print(o.out + ": " + core::counted(table.rows(), "gap"));
     }
     return done;
 }
@@ -118,7 +119,7 @@ std::vector<std::string> boundaries_of(const geometry::BlockCase& made) {
 
 std::string mesh_text(const geometry::BlockMesh& mesh) {
     const auto& q = mesh.quality;
-    return std::to_string(q.cells) + " cells, " + std::to_string(mesh.cells_in_gap) +
+    return core::counted(q.cells, "cell") + ", " + std::to_string(mesh.cells_in_gap) +
            " across the gap, non-orthogonality at most " +
            rounded(core::convert(q.largest_non_orthogonality, "rad", "deg"), 3) + " deg, skewness at most " +
            rounded(q.largest_skewness, 3) + ", y+ about " + rounded(mesh.wall_units_mean, 2);
@@ -164,11 +165,11 @@ int write_domain(DomainCommand& o, Shell& shell) {
                                        : geometry::write_ansys_case(body.mesh, o.flow, o.out);
     }
     if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
-        shell.warn(doubt);
+        shell.show_warning(doubt);
     }
     if (domain.cells_in_gap < 3 && o.solver == "openfoam" && !blocks) {
-        shell.warn("only " + rounded(domain.cells_in_gap, 2) +
-                   " cells across the smallest clearance: choose a smaller --cell");
+        shell.show_warning("only " + rounded(domain.cells_in_gap, 2) +
+                           " cells across the smallest clearance: choose a smaller --cell");
     }
     nlohmann::json document{{"solver", o.solver},
                             {"folder", o.out},
@@ -188,7 +189,7 @@ int write_domain(DomainCommand& o, Shell& shell) {
         shell.print_json(document);
     } else {
         shell.print(
-            o.out + ": " + std::to_string(files.size()) + " files; " + (blocks ? mesh_text(made->mesh) + "; " : "") +
+            o.out + ": " + core::counted(files.size(), "file") + "; " + (blocks ? mesh_text(made->mesh) + "; " : "") +
             (o.solver == "openfoam" ? "run " + o.out + "/Allrun" : "mesh surfaces/, then fluent.jou or cfx.ccl"));
     }
     return done;

@@ -134,12 +134,12 @@ int run_control(const ControlArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     dynamics::Conditions held;
     for (const auto& v :
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
     }
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, held);
     const SeparatedPlant plant = separate(model, held);
     shell.show(plant.remarks);
     ControlLaw law = hold_at(core::parse_in(a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);

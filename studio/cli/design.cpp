@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -35,7 +36,7 @@ std::string shown(double value, const std::string& unit) { return geometry::show
 
 cases::Design open(Shell& shell, const Arguments& a) {
     cases::Design design = cases::Design::open(cases::Study::open(a.study));
-    shell.remark(design.notes);
+    shell.show(design.notes);
     return design;
 }
 
@@ -149,8 +150,8 @@ int run(Shell& shell, const Arguments& a) {
     if (shell.json) {
         shell.print_json({{"results", file}, {"runs", design.runs().size()}, {"usable", good}, {"failed", failed}});
     }
-    shell.print(text + file + ": " + std::to_string(good) + " of " + std::to_string(design.runs().size()) +
-                " runs can be used\n");
+    shell.print(text + file + ": " + std::to_string(good) + " of " + core::counted(design.runs().size(), "run") +
+                " can be used\n");
     return computed == 0 && !design.runs().empty() ? wrong_input : done;  // not one case gave loads
 }
 
@@ -162,9 +163,9 @@ int fit(Shell& shell, const Arguments& a) {
         list.push_back(surrogate);
         list.back()["fidelity"] = design.spec().fidelities.at(surrogate.fidelities().back()).name;
         const auto& check = surrogate.check();
-        text += name + ": " + std::to_string(check.points) + " runs (" +
+        text += name + ": " + core::counted(check.points, "run") + " (" +
                 design.spec().fidelities.at(surrogate.fidelities().back()).name + ") of " +
-                std::to_string(check.shapes) + " shapes; on shapes left out the error is " +
+                core::counted(check.shapes, "shape") + "; on shapes left out the error is " +
                 core::format_number(check.root_mean_square, 3) + " " + surrogate.unit() +
                 (std::isfinite(check.nearest_shape) ? " (" + core::format_number(check.nearest_shape, 3) + " " +
                                                           surrogate.unit() + " by the nearest shape)"

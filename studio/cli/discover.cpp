@@ -270,8 +270,8 @@ void add_discover_command(CLI::App& app, Shell& shell) {
             (void)estimator::export_format_of(name);
         }
         const dynamics::Model model = dynamics::read_model(arguments->model);
-        const std::vector<std::string> warnings = show_table_warnings(shell, model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
+        const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
         discovery::DiscoverOptions options;
         options.horizon = core::parse_in(arguments->horizon, "s");
         options.seed = arguments->seed;
@@ -281,7 +281,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
             (void)dynamics::effect(name);  // says the nearest name where there is none
         }
         discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
-        shell.remark(found.problems);
+        shell.show(found.problems);
         std::string again = make_again(found, model, data, shell);
         again += export_again(found, model, *arguments, shell);
         discovery::write_discovery(found, model, data, arguments->out, renderer);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/table.h"
 #include "core/text.h"
@@ -103,7 +104,7 @@ nlohmann::json along_gap(const EstimateArguments& a, const dynamics::Model& mode
             " % of mean NEES lie within " + core::format_number(consistency.lower, 3) + " to " +
             core::format_number(consistency.upper, 3) +
             " (95 % are right); the analytic model sees one of two forces apart at " + std::to_string(one) + " of " +
-            std::to_string(map.gaps.size()) + " gaps\n";
+            core::counted(map.gaps.size(), "gap") + "\n";
     return {{"information", map}, {"consistency", consistency}, {"observability", observability}};
 }
 
@@ -112,9 +113,9 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    shell.remark(data.problems);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+    shell.show(data.problems);
     estimator::EstimateOptions options = a.options;
     if (!a.poles.empty()) {
         options.poles = parse_poles(a.poles);
@@ -172,7 +173,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
                 core::format_number(result.separability.determinant, 4) + "\n";
     }
     for (const auto& r : result.runs) {
-        text += r.name + ": " + std::to_string(r.samples) + " samples";
+        text += r.name + ": " + core::counted(r.samples, "sample");
         for (const auto& [count, what] : {std::pair(r.missing, " gaps missing"), std::pair(r.outliers, " outliers"),
                                           std::pair(r.gaps_in_time, " holes in time")}) {
             text += count > 0 ? ", " + std::to_string(count) + what : "";

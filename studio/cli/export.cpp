@@ -171,7 +171,7 @@ int run_motion(Shell& shell, const ExportCommand& command) {
     const core::ReplacingAllowed by_the_export_itself;
     const auto fmu = dynamics::export_motion_fmu(model, command.out, options);
     shell.print(fmu.file.string());
-    shell.remark(fmu.remarks);
+    shell.show(fmu.remarks);
     const auto names = [](const std::vector<dynamics::MotionFmuVariable>& variables) {
         std::string list;
         for (const auto& one : variables) {
@@ -214,6 +214,7 @@ std::filesystem::path missing_folder(const std::filesystem::path& file) {
 }
 
 int run_export(Shell& shell, const ExportCommand& command) {
+    shell.list_on_stdout = true;
     if (!command.motion.empty()) {
         return run_motion(shell, command);
     }
@@ -250,7 +251,7 @@ int run_export(Shell& shell, const ExportCommand& command) {
                              " MB, more than most compilers and controllers take" +
                              (thinned ? "" : ": --max-error 0.5% or --points make it smaller"),
                          {}});
-        shell.remark(large);
+        shell.show(large);
     }
     shell.info(core::format_number(static_cast<double>(bytes) / 1000, 3) + " kB" +
                (bytes > 50000 && !thinned

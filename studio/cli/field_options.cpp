@@ -11,6 +11,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "postproc/importers/importer.h"
 
 namespace underbody::studio {
 
@@ -58,10 +59,14 @@ postproc::ReadOptions FieldOptions::read_options() const {
 
 namespace {
 
+/// A folder is a file of ours where it is an OpenFOAM case.
+bool is_other_folder(const fs::path& path) { return fs::is_directory(path) && postproc::importer_for(path) == nullptr; }
+
 /// Names of files that fit but for a number, the first few, each with the reason.
 std::string near_misses(const core::NamePattern& pattern) {
     constexpr std::size_t most = 5;
-    const auto paths = pattern.near_misses();
+    auto paths = pattern.near_misses(".", true);
+    std::erase_if(paths, is_other_folder);
     std::string list;
     for (std::size_t i = 0; i < std::min(most, paths.size()); ++i) {
         list += (i == 0 ? "" : ", ") + paths[i].string() + " (" + pattern.why_not(paths[i]) + ")";
@@ -71,12 +76,18 @@ std::string near_misses(const core::NamePattern& pattern) {
 
 void add_pattern(const std::string& text, Batch& batch) {
     const core::NamePattern pattern(text);
-    const auto found = pattern.files();
+    auto found = pattern.files_and_folders();
+    const auto folder = std::find_if(found.begin(), found.end(),
+                                     [](const auto& one) { return one.folder && is_other_folder(one.path); });
+    const std::string other = folder == found.end() ? "" : folder->path.string();
+    std::erase_if(found, [](const auto& one) { return one.folder && is_other_folder(one.path); });
     const std::string missed = near_misses(pattern);
     if (found.empty()) {
         throw core::InputError(
             "file", "no file fits the pattern '" + text + "'" + (missed.empty() ? "" : "; these come near: " + missed),
-            {}, "patterns may hold *, ?, {name} and {name:unit}");
+            {},
+            other.empty() ? "patterns may hold *, ?, {name} and {name:unit}"
+                          : "what fits is a folder, and no OpenFOAM case: '" + other + "'");
     }
     if (!missed.empty()) {
         batch.problems.push_back({core::Problem::Severity::warning,

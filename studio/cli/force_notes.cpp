@@ -10,50 +10,51 @@ namespace underbody::studio {
 
 namespace {
 
-/// The message of a warning, which the text has said; nothing for a note.
-std::vector<std::string> said(Shell& shell, const core::Problem& problem) {
-    if (problem.severity == core::Problem::Severity::note) {
-        return {};
+/// The messages of those that are no notes, which are said.
+std::vector<std::string> said(Shell& shell, const core::Problems& problems) {
+    std::vector<std::string> messages;
+    for (const core::Problem& problem : problems) {
+        if (problem.severity != core::Problem::Severity::note) {
+            messages.push_back(problem.message);
+            shell.show({problem});
+        }
     }
-    if (!shell.json) {  // there they stand in the document
-        shell.remark({problem});
+    return messages;
+}
+
+core::Problems table_remarks(const dynamics::Model& model) {
+    core::Problems all;
+    for (const dynamics::ForceSource& source : model.forces) {
+        const core::Problems& own = source.table.remarks();
+        all.insert(all.end(), own.begin(), own.end());
     }
-    return {problem.message};
+    return all;
+}
+
+core::Problems together(core::Problems first, const core::Problems& more) {
+    first.insert(first.end(), more.begin(), more.end());
+    return first;
 }
 
 }  // namespace
 
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json) {
     json["forces"] = dynamics::fits_json(model);
-    json["warnings"] = nlohmann::json::array();
     for (const std::string& line : dynamics::fit_lines(model)) {
         shell.print(line + "\n");
     }
-    const auto say = [&](const core::Problem& problem) {
-        for (const std::string& warning : said(shell, problem)) {
-            json["warnings"].push_back(warning);
-        }
-    };
-    for (const core::Problem& problem : dynamics::held_outside(model, held.over(model.conditions))) {
-        say(problem);
-    }
-    for (const core::Problem& problem : dynamics::effects_without_motion(model)) {
-        say(problem);
-    }
-    for (const std::string& warning : show_table_warnings(shell, model)) {
-        json["warnings"].push_back(warning);
-    }
+    json["warnings"] = said(shell, together(dynamics::held_outside(model, held.over(model.conditions)),
+                                            together(dynamics::effects_without_motion(model), table_remarks(model))));
 }
 
-std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model) {
-    std::vector<std::string> warnings;
-    for (const dynamics::ForceSource& source : model.forces) {
-        for (const core::Problem& problem : source.table.remarks()) {
-            const auto one = said(shell, problem);
-            warnings.insert(warnings.end(), one.begin(), one.end());
-        }
-    }
-    return warnings;
+std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
+                                             const dynamics::Conditions& held) {
+    return said(shell, together(dynamics::held_outside(model, held.over(model.conditions)), table_remarks(model)));
+}
+
+std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
+                                             const dynamics::Measurements& data) {
+    return said(shell, together(dynamics::runs_outside(model, data), table_remarks(model)));
 }
 
 }  // namespace underbody::studio

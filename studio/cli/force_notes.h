@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::studio {
@@ -15,8 +16,12 @@ class Shell;
 /// same as `forces` and `warnings` in the JSON. `held`: what is given over the model's conditions.
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json);
 
-/// Prints the warnings of the model's force tables alone (points that have not settled, outliers, ...) and returns
-/// them for `warnings` of the JSON: for commands whose numbers rest on the tables and that do not show the fits.
-std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model);
+/// Says the warnings of the model's force tables alone (points that have not settled, outliers, ...) and returns
+/// them for `warnings` of the JSON: for commands whose numbers rest on the tables and that do not show the fits. What
+/// lies outside the tables: conditions, `held` over the model's own, or what was measured.
+std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
+                                             const dynamics::Conditions& held = {});
+std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
+                                             const dynamics::Measurements& data);
 
 }  // namespace underbody::studio

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/field/summary.h"
 #include "postproc/field/vtk_files.h"
@@ -94,7 +95,7 @@ void show_missing_arrays(Shell& shell, const postproc::Field& field, const std::
             });
         });
         if (!found && name.find_first_of("*?") == std::string::npos) {
-            shell.warn(field.files.front() + ": there is no array '" + name + "'");
+            shell.show_warning(field.files.front() + ": there is no array '" + name + "'");
         }
     }
 }
@@ -103,8 +104,9 @@ void show_missing_arrays(Shell& shell, const postproc::Field& field, const std::
 void show_missing_values(Shell& shell, const postproc::FieldSummary& summary) {
     for (const auto& array : summary.arrays) {
         if (array.missing > 0) {
-            shell.warn(summary.file + ": '" + array.name + "' has " + std::to_string(array.missing) +
-                       " values that are not numbers: written as NaN");
+            shell.show_warning(summary.file + ": '" + array.name + "' has " +
+                               core::counted(array.missing, "value that is", "values that are") +
+                               " not a number: written as NaN");
         }
     }
 }
@@ -123,7 +125,7 @@ std::string those_written(const nlohmann::json& written, std::size_t all) {
     for (const auto& entry : written) {
         names += (names.empty() ? "" : ", ") + entry["out"].get<std::string>();
     }
-    return "written before: " + names + "; the other " + std::to_string(all - written.size()) + " files were not";
+    return "written before: " + names + "; the other " + core::counted(all - written.size(), "file") + " were not";
 }
 
 }  // namespace

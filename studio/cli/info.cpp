@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/utf8.h"
 #include "postproc/field/summary.h"
@@ -61,8 +62,8 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
     }
     print_columns(shell, zones);
     if (summary.zones.size() > 1) {
-        shell.print("\n" + std::to_string(summary.points) +
-                    " points zone by zone: those that zones share count in each");
+        shell.print("\n" + core::counted(summary.points, "point") +
+                    " zone by zone: those that zones share count in each");
     }
     Rows arrays = {{"array", "unit", "on", "min", "max", "in the file"}};
     for (const auto& array : summary.arrays) {
@@ -89,7 +90,7 @@ void print(Shell& shell, const postproc::FieldSummary& summary) {
 void print(Shell& shell, const postproc::Monitor& monitor,
            const std::vector<std::optional<postproc::IterationScatter>>& scatter) {
     const auto& steps = monitor.values.front();
-    shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + std::to_string(steps.size()) + " rows, " +
+    shell.print("\n" + (monitor.title.empty() ? "" : monitor.title + ": ") + core::counted(steps.size(), "row") + ", " +
                 monitor.columns.front() + " " + short_number(steps.front()) + " to " + short_number(steps.back()));
     Rows rows = {{"column", "last", "the last rows"}};
     for (std::size_t c = 1; c < monitor.columns.size(); ++c) {
@@ -196,7 +197,7 @@ bool show_log(Shell& shell, const std::string& file) {
     } else {
         print(shell, summary);
     }
-    shell.remark(summary.end.problems);
+    shell.show(summary.end.problems);
     return true;
 }
 

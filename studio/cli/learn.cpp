@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/table.h"
 #include "core/text.h"
@@ -184,6 +185,7 @@ struct Learned {
     AugmentedModel model;
     Moments moments;
     core::Problems remarks;
+    std::vector<std::string> warnings;  ///< of the force tables, said already
     std::vector<KnownRow> rows;
     std::vector<PredictionError> predictions;
     std::string tested_on;
@@ -265,7 +267,7 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     RunSplit split;
     if (!a.data.empty()) {
         split = split_runs(dynamics::read_measurements(a.data), a.compare);
-        shell.remark(split.train.problems);
+        shell.show(split.train.problems);
         if (a.conditions.empty()) {
             held = dynamics::signals_of(split.train.runs.front()).held;
         }
@@ -275,6 +277,8 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     Layout layout{{"input_force"}, {"heave_velocity", "gap"}, 2};
     layout.states.insert(layout.states.end(), training.auxiliaries.begin(), training.auxiliaries.end());
     Learned out;
+    out.warnings =
+        a.data.empty() ? show_table_warnings(shell, declared, held) : show_table_warnings(shell, declared, split.train);
     if (has_forces(layout)) {
         out.rows = heave_rows(layout, plant.virtual_mass, plant.bias);
     }
@@ -347,7 +351,7 @@ nlohmann::json describe(const Learned& l, const LearnOptions& options, bool scan
 std::string text_of(const Learned& l) {
     const AugmentedModel& m = l.model;
     std::string text = "order " + std::to_string(m.order) + " of rank " + std::to_string(m.rank) + " from " +
-                       std::to_string(m.samples) + " samples, " + m.method + "\n";
+                       core::counted(m.samples, "sample") + ", " + m.method + "\n";
     for (std::size_t i = 0; i < m.layout.states.size(); ++i) {
         text += "  d " + m.layout.states[i] + " =";
         for (std::size_t j = 0; j < m.layout.states.size(); ++j) {
@@ -373,7 +377,6 @@ int run_learn(const LearnArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model declared = dynamics::read_model(a.model);
-    const std::vector<std::string> warnings = show_table_warnings(shell, declared);
     LearnOptions options;
     options.order = a.order;
     // An order asks for the thesis's truncated model; without one, for the best linear law.
@@ -391,7 +394,7 @@ int run_learn(const LearnArguments& a, Shell& shell) {
     shell.show(learned.remarks);
     shell.show(learned.model.remarks);
     nlohmann::json json = describe(learned, options, a.scan, by_snapshots(a));
-    json["warnings"] = warnings;
+    json["warnings"] = learned.warnings;
     if (!a.out.empty()) {
         core::write_file(a.out, json.dump(2) + "\n");
     }

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "core/batch_problems.h"
+#include "core/counted.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -199,7 +200,7 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     for (const auto& zone : result.zones) {
         const auto& p = zone.pressure.force;
         const auto& v = zone.viscous.force;
-        shell.print("zone '" + zone.name + "': " + std::to_string(zone.faces) + " faces, " +
+        shell.print("zone '" + zone.name + "': " + core::counted(zone.faces, "face") + ", " +
                     core::format_number(zone.area, 5) + " m^2, force " +
                     vector({p[0] + v[0], p[1] + v[1], p[2] + v[2]}) + " N");
     }
@@ -287,7 +288,7 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
                                "drag_force, pitch_moment");
     }
     for (const auto& file : unchecked) {
-        shell.warn(file + ": compared with nothing: no report, monitor or manifest states its loads");
+        shell.show_warning(file + ": compared with nothing: no report, monitor or manifest states its loads");
     }
     double worst = 0;
     int failed = 0;
@@ -295,12 +296,13 @@ int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double al
         worst = std::max(worst, one.of_force);
         if (!(one.of_force <= allowed)) {
             ++failed;
-            shell.warn(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) + ", stated " +
-                       core::format_number(one.stated, 5) + (one.stated_in.empty() ? "" : " in " + one.stated_in) +
-                       ": " + of_force(one) + (one.hint.empty() ? "" : "; " + one.hint));
+            shell.show_warning(one.file + ": " + one.quantity + " is " + core::format_number(one.value, 5) +
+                               ", stated " + core::format_number(one.stated, 5) +
+                               (one.stated_in.empty() ? "" : " in " + one.stated_in) + ": " + of_force(one) +
+                               (one.hint.empty() ? "" : "; " + one.hint));
         }
     }
-    shell.info(std::to_string(comparisons.size()) + " loads compared with those stated: at most " +
+    shell.info(core::counted(comparisons.size(), "load") + " compared with those stated: at most " +
                core::format_number(100 * worst, 3) + " % of the force apart, " + std::to_string(failed) + " beyond " +
                core::format_number(100 * allowed, 3) + " %");
     return failed > 0 ? check_failed : done;
@@ -510,9 +512,8 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
     }
     if (!failures.empty() && (cases.empty() || !given.keep_going)) {
         throw core::InputError("file",
-                               std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) +
-                                   " files cannot be used (the first: '" + failures.front().file +
-                                   "'); nothing was written",
+                               std::to_string(failures.size()) + " of " + core::counted(batch.files.size(), "file") +
+                                   " cannot be used (the first: '" + failures.front().file + "'); nothing was written",
                                {}, cases.empty() ? "" : "mend them, or take the others alone with --keep-going");
     }
     return cases;
@@ -520,6 +521,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
 
 int run_loads(Shell& shell, const LoadsArguments& given) {
     const Batch batch = find_files(given.files, given.manifest, given.field.zones);
+    shell.list_on_stdout = given.out.empty() && (batch.files.size() > 1 || !given.manifest.empty());
     shell.show(batch.problems);
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
@@ -534,7 +536,8 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     check_conditions(batch, given);
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
-    int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
+    const int verdict =
+        given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
     core::Problems notes;
     if (given.mean) {
         cases = postproc::means_in_time(cases, notes);
@@ -542,12 +545,21 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     cases = given.mesh_study.empty() ? postproc::with_iteration_sigmas(cases)
                                      : postproc::mesh_studies(cases, given.mesh_study, notes);
     shell.show(notes);
+    if (!failures.empty()) {
+        shell.show_warning("without " + std::to_string(failures.size()) + " of " +
+                           core::counted(batch.files.size(), "file") + ", which cannot be used");
+    }
     show_studies(shell, cases);
     const bool several = cases.size() + failures.size() > 1 || (given.files.empty() && !given.manifest.empty());
     shell.hand_over("loads", [&] { return postproc::loads_table(cases, batch.number_units); });
+    const auto table_of_all = [&] {
+        core::Table table = postproc::loads_table(cases, batch.number_units);
+        shell.comment_warnings(table);
+        return table;
+    };
     const bool table = several || !given.manifest.empty() || !given.out.empty();
     if (!given.out.empty()) {
-        core::write_csv(given.out, postproc::loads_table(cases, batch.number_units));
+        core::write_csv(given.out, table_of_all());
         shell.info("wrote " + given.out);
     }
     if (shell.json) {
@@ -559,16 +571,11 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     } else if (!table) {
         print(shell, cases.front());
     } else if (given.out.empty()) {
-        std::string text = core::write_csv(postproc::loads_table(cases, batch.number_units));
+        std::string text = core::write_csv(table_of_all());
         text.pop_back();
         shell.print(text);
     }
-    if (!failures.empty()) {
-        shell.warn("without " + std::to_string(failures.size()) + " of " + std::to_string(batch.files.size()) +
-                   " files, which cannot be used");
-        verdict = wrong_input;
-    }
-    return verdict;
+    return failures.empty() ? verdict : static_cast<int>(wrong_input);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -30,12 +31,12 @@ int run_predict(const PredictArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = dynamics::read_model(a.model);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
     dynamics::PredictOptions options;
     options.horizon = core::parse_in(a.horizon, "s");
     const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
-    shell.remark(prediction.remarks);
+    shell.show(prediction.remarks);
     shell.hand_over("prediction", [&] { return prediction.table; });
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), prediction.table);
@@ -52,7 +53,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     std::string text;
     for (const dynamics::ChannelError& channel : prediction.channels) {
         text += channel.name + ": RMSE " + core::format_number(channel.rmse, 4) + " " + channel.unit + " over " +
-                std::to_string(channel.count) + " values";
+                core::counted(channel.count, "value");
         if (channel.in_noise > 0) {
             text += ", " + core::format_number(channel.in_noise, 3) + " times the " +
                     (channel.noise_declared ? "declared" : "estimated") + " noise of " +

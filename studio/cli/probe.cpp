@@ -149,15 +149,18 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         "  underbody probe case.cas.gz --gap 9 --symmetry y --density \"998 kg/m^3\"\n"
         "  underbody probe body.csv --point \"0,0,5 mm\" --arrays pressure");
     shell.on(command, [&shell, o] {
+        shell.list_on_stdout = o->out.empty();
         postproc::ReadOptions read = o->field.read_options();
         auto field = shell.read_field(o->file, read);
         shell.show(field.problems);
         const auto density =
             o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
         if (!postproc::bring_to_pascal(field, density) && o->gap > 0) {
-            shell.warn(o->file + ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
+            shell.show_warning(o->file +
+                               ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
         }
-        const core::Table table = look(field, *o, shell);
+        core::Table table = look(field, *o, shell);
+        shell.comment_warnings(table);
         shell.hand_over("values", [&] { return table; });
         if (!o->out.empty()) {
             core::write_csv(o->out, table);

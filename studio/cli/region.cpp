@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -119,14 +120,16 @@ void show_remarks(Shell& shell, const dynamics::StabilityRegion& region, const s
     for (core::Problem& remark : named) {
         remark.message = name + ": " + remark.message;
     }
-    shell.remark(named);
+    shell.show(named);
 }
 
 int run_starts(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                Shell& shell) {
+    shell.list_on_stdout = a.table.empty();
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
     std::vector<dynamics::EndClass> classes;
-    const core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
+    core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
+    shell.comment_warnings(ends);
     shell.hand_over("map", [&] { return ends; });
     if (!a.table.empty()) {
         core::write_csv(std::filesystem::path(a.table), ends);
@@ -164,7 +167,7 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
 int run_probability(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
                     Shell& shell) {
     const dynamics::ProbabilityMap map = dynamics::probability_map(model, options, a.draws, a.seed, shell.progress());
-    shell.remark(map.remarks);
+    shell.show(map.remarks);
     if (!a.out.empty()) {
         write_picture(dynamics::probability_figure(map), a.out);
     }
@@ -175,7 +178,7 @@ int run_probability(const RegionArguments& a, const dynamics::Model& model, cons
         shell.print_json(json);
     }
     shell.print("safe area " + percent(map.area_mean) + " +- " + percent(map.area_sigma) + " over " +
-                std::to_string(map.draws) + " draws\n");
+                core::counted(map.draws, "draw") + "\n");
     return ExitCode::done;
 }
 
@@ -305,7 +308,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
         return run_variants(a, model, options, shell);
     }
     const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
-    shell.remark(region.remarks);
+    shell.show(region.remarks);
     if (!a.out.empty()) {
         write_picture(dynamics::region_figure(region), a.out);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -135,17 +136,17 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
     if (draws > 0) {
         const dynamics::ProbabilityMap map =
             loop_probability(loop.plant, loop.law, loop.estimator, loop.options, grid, draws, shell.progress());
-        shell.remark(map.remarks);
+        shell.show(map.remarks);
         dynamics::to_json(json, map);
         figure = dynamics::probability_figure(map);
         figure.title = "Chance that the loop holds the gap";
         text = "held from " + core::format_number(100 * map.area_mean, 4) + " % +- " +
-               core::format_number(100 * map.area_sigma, 3) + " % of the starts, over " + std::to_string(map.draws) +
-               " draws of the sensors' noise\n";
+               core::format_number(100 * map.area_sigma, 3) + " % of the starts, over " +
+               core::counted(map.draws, "draw") + " of the sensors' noise\n";
     } else {
         const dynamics::StabilityRegion region =
             loop_region(loop.plant, loop.law, loop.estimator, loop.options, grid, shell.progress());
-        shell.remark(region.remarks);
+        shell.show(region.remarks);
         dynamics::to_json(json, region);
         figure = dynamics::region_figure(region);
         figure.title = "Where starts end with the loop and its estimator";

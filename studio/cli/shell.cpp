@@ -17,6 +17,7 @@
 
 #include "core/own_files.h"
 #include "core/parallel.h"
+#include "core/table.h"
 #include "postproc/field/import_error.h"
 #include "studio/cli/caller.h"
 #include "studio/cli/option_words.h"
@@ -81,9 +82,44 @@ void Shell::on(CLI::App* command, std::function<int()> action) {
     command->callback([this, action = std::move(action)] { action_ = action; });
 }
 
+namespace {
+
+// NaN has no place in JSON: nlohmann writes null for it. Names of files may be of any bytes.
+std::string dumped(const nlohmann::json& document, int indent) {
+    return document.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Whether the sentence is a text of the document or a part of one.
+bool holds(const std::string& document, const std::string& sentence) {
+    const std::string quoted = dumped(sentence, -1);
+    return document.find(quoted.substr(1, quoted.size() - 2)) != std::string::npos;
+}
+
+/// The document with these sentences in its `warnings`, as texts or, where it has objects there, as objects.
+nlohmann::json with_warnings(nlohmann::json document, const std::vector<std::string>& sentences) {
+    auto& warnings = document["warnings"];
+    const bool objects = warnings.is_array() && !warnings.empty() && warnings.front().is_object();
+    for (const std::string& one : sentences) {
+        warnings.push_back(objects ? nlohmann::json{{"message", one}} : nlohmann::json(one));
+    }
+    return document;
+}
+
+}  // namespace
+
 void Shell::print_json(const nlohmann::json& document) {
-    // NaN has no place in JSON: nlohmann writes null for it. Names of files may be of any bytes.
-    std::string text = document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    std::string text = dumped(document, 2);
+    if (document.is_object() && !document.contains("error")) {
+        std::vector<std::string> missing;
+        for (const Warning& one : std::exchange(undocumented_, {})) {
+            if (!holds(text, one.message)) {
+                missing.push_back(with_flags(one.text));
+            }
+        }
+        if (!missing.empty()) {
+            text = dumped(with_warnings(document, missing), 2);
+        }
+    }
     if (caller_ != nullptr) {
         caller_->document = std::move(text);
     } else {
@@ -183,28 +219,23 @@ void Shell::will_write(const std::string& path) {
     }
 }
 
-void Shell::remark(const core::Problems& problems) {
-    if (json) {
-        show(problems);
-        return;
-    }
-    for (const auto& problem : problems) {
-        const std::string text = text_of(problem);
-        if (problem.severity == core::Problem::Severity::note) {
-            detail(text);
-        } else if (said_.insert(text).second) {
-            print("warning: " + text);
-        }
-    }
-}
-
 void Shell::show(const core::Problems& problems) {
     for (const auto& problem : problems) {
         const std::string text = text_of(problem);
         if (problem.severity == core::Problem::Severity::note) {
             detail(text);
         } else if (said_.insert(text).second) {
-            warn(text);
+            json || list_on_stdout ? warn(text) : print("warning: " + text);
+            undocumented_.push_back({text, problem.message});
+        }
+    }
+}
+
+void Shell::comment_warnings(core::Table& table) const {
+    for (const Warning& one : undocumented_) {
+        if (std::none_of(table.comments.begin(), table.comments.end(),
+                         [&](const std::string& comment) { return comment.find(one.message) != std::string::npos; })) {
+            table.comments.push_back("warning: " + one.text);
         }
     }
 }

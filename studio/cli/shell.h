@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "core/progress.h"
@@ -45,7 +46,8 @@ public:
     bool quiet = false;
     bool verbose = false;
     int threads = 0;
-    bool force = false;  ///< files of others are replaced
+    bool force = false;           ///< files of others are replaced
+    bool list_on_stdout = false;  ///< a table or names of files, for other programs: no line of ours among them
 
     /// Runs `action` when the sub-command was chosen; its result is the exit code.
     void on(CLI::App* command, std::function<int()> action);
@@ -54,18 +56,21 @@ public:
     void print_json(const nlohmann::json& document);
     /// Text on stdout (nothing with --json).
     void print(const std::string& text);
-    /// To stderr. `info` is silent with --quiet, `detail` speaks with --verbose only.
+    /// To stderr. `info` is silent with --quiet, `detail` speaks with --verbose only. What is said of the result is
+    /// for show().
     void warn(const std::string& text);
     void info(const std::string& text);
     void detail(const std::string& text);
-    /// Problems of a reader, as warnings.
+    /// Problems that change what the numbers mean, each once and where the numbers are read: in the text a line
+    /// "warning: ..." on stdout (on stderr where stdout is for other programs: `list_on_stdout`); with --json on
+    /// stderr and in the document, whose `warnings` get what it does not hold elsewhere. Notes are detail.
     void show(const core::Problems& problems);
+    void show_warning(const std::string& message) { show({{core::Problem::Severity::warning, message, {}}}); }
+    /// The warnings so far as comments of a table that is a result, those that it does not hold.
+    void comment_warnings(core::Table& table) const;
     /// Refuses, before the work is done, to write over a file that is somebody else's (core/own_files.h). Empty:
     /// nothing.
     static void will_write(const std::string& path);
-    /// Problems that change what the numbers mean: in the text on stdout, above the numbers (with --json, whose
-    /// document must hold them itself, on stderr).
-    void remark(const core::Problems& problems);
 
     /// A CFD file, or the field that the caller read from it before.
     postproc::Field read_field(const std::string& path, const postproc::ReadOptions& options);
@@ -86,11 +91,17 @@ public:
     int execute(CLI::App& app, int argc, const char* const* argv);
 
 private:
+    struct Warning {
+        std::string text;  ///< with its place
+        std::string message;
+    };
+
     int run_action();
     void report(const core::Error& error, const char* what);
     void say(int level, const std::string& text);
     std::function<int()> action_;
-    std::set<std::string> said_;  ///< warnings, each of which is said once
+    std::set<std::string> said_;         ///< warnings, each of which is said once
+    std::vector<Warning> undocumented_;  ///< said, but in no document yet
     Caller* caller_ = nullptr;
     core::Progress progress_;
 };

@@ -237,7 +237,7 @@ void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
     const dynamics::Trajectory motion = dynamics::simulate(
         job.model, job.start.needed_gap(), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
         shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
-    shell.remark(motion.remarks);
+    shell.show(motion.remarks);
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
     write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, job, shell);
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
@@ -254,7 +254,7 @@ void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
     dynamics::PitchTrajectory motion =
         dynamics::simulate(plant, start, job.options, shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
-    shell.remark(motion.remarks);
+    shell.show(motion.remarks);
     write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::PitchState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +
@@ -277,7 +277,7 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
         body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
     core::Problems remarks;
     add_remarks(remarks, job.model);
-    shell.remark(remarks);
+    shell.show(remarks);
     write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::SurfaceState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, speed " +
@@ -291,7 +291,7 @@ void run_body(const SimulateArguments& a, Job& job, Shell& shell) {
     dynamics::BodyTrajectory motion =
         dynamics::simulate_body(body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
     add_remarks(motion.remarks, job.model);
-    shell.remark(motion.remarks);
+    shell.show(motion.remarks);
     write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::BodyState& last = motion.state.back();
     std::string text = "ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, gap " +

@@ -79,7 +79,7 @@ int solve(Shell& shell, const std::string& folder, bool again) {
     const auto forces = forces_of(folder);
     const auto loads = cases::settled_loads(folder);
     if (loads.iterations > 0 && !loads.settled) {
-        shell.warn("not settled: " + loads.text);
+        shell.show_warning("not settled: " + loads.text);
     }
     if (shell.json) {
         shell.print_json({{"case", folder},

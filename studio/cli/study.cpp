@@ -52,13 +52,17 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 
 void print_warnings(Shell& shell, const cases::StudyResults& results) {
     for (const auto& problem : results.gathered_warnings(shell.verbose)) {
-        shell.print("warning: " + problem.place.file + ": " + problem.message);
+        shell.show({{core::Problem::Severity::warning, problem.message, {problem.place.file, {}, {}, {}}}});
     }
 }
 
 void show_notes(Shell& shell, const cases::Study& study) {
     for (const auto& note : study.notes) {
-        shell.print((note.severity == core::Problem::Severity::note ? "note: " : "warning: ") + note.message);
+        if (note.severity == core::Problem::Severity::note) {
+            shell.print("note: " + note.message);
+        } else {
+            shell.show_warning(note.message);
+        }
     }
 }
 
@@ -103,6 +107,7 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
         json["notes"] = json_of_notes(study, results.notes);
         json["not_settled"] = tables::not_settled(results.loads);
         shell.print_json(json);
+        return results.failed == 0 ? done : wrong_input;
     }
     show_notes(shell, study);
     print_warnings(shell, results);

@@ -46,7 +46,7 @@ int run_fit(Shell& shell, const FitCommand& command) {
                     core::counted(axis.points.size(), "set point");
         }
         for (const auto& remark : table.remarks()) {
-            text += "\n  " + remark.message;
+            text += (remark.severity == core::Problem::Severity::note ? "\n  " : "\n  warning: ") + remark.message;
         }
         shell.print(text);
         document["tables"].push_back(entry);
@@ -80,7 +80,7 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
         remarks.push_back(std::move(remark));
     }
     std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
-    shell.remark(remarks);
+    shell.show(remarks);
     std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
     if (e.sigma > 0) {
         line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
@@ -96,7 +96,7 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
         line += "   no points around";
     }
     if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
-        shell.remark(
+        shell.show(
             {{core::Problem::Severity::warning,
               "no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +
                   " % of the axes' ranges outside them): the value is an extrapolation, its error says how far to "

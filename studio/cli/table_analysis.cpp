@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -150,7 +151,7 @@ void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vecto
         shell.print(text);
     }
     if (!found.empty() && !masses) {
-        shell.warn(
+        shell.show_warning(
             "without --mass and --inertia 1 kg and 1 kg m^2 are taken: they decide between stable and flutter where "
             "the stiffness is not symmetric");
     }
@@ -262,7 +263,7 @@ int run_compare(Shell& shell, const CompareCommand& command) {
             all.emplace_back(name, tables::ForceTable::fit(tables::selected_rows(points, command.by + "=" + name),
                                                            quantity, command.table.fit_options()));
         } catch (const core::InputError& error) {
-            shell.warn(name + " is left out: " + error.message());
+            shell.show_warning(name + " is left out: " + error.message());
         }
     }
     tables::ComparisonOptions options;
@@ -320,10 +321,10 @@ int run_collapse(Shell& shell, const CollapseCommand& command) {
             where += (where.empty() ? "; off at " : ", ") + result.abscissa + " " + five_digits(from, 4) +
                      (to > from ? " to " + five_digits(to, 4) : "");
         }
-        shell.print(result.by + " " + five_digits(g.level) + " " + result.by_unit + ": " + std::to_string(g.points) +
-                    " points, " + five_digits(g.mean_ratio, 4) + " of what the square law says from " +
-                    five_digits(result.reference) + " " + result.by_unit + ", exponent " + five_digits(g.exponent, 4) +
-                    where);
+        shell.print(result.by + " " + five_digits(g.level) + " " + result.by_unit + ": " +
+                    core::counted(g.points, "point") + ", " + five_digits(g.mean_ratio, 4) +
+                    " of what the square law says from " + five_digits(result.reference) + " " + result.by_unit +
+                    ", exponent " + five_digits(g.exponent, 4) + where);
     }
     shell.print(result.verdict);
     nlohmann::json document = result;

@@ -158,9 +158,9 @@ void keep(const core::Problems& remarks, core::Problems& warnings) {
     }
 }
 
-/// Says them where the values are read (on stderr where the text is a list of files), and keeps them.
-void tell(Shell& shell, const core::Problems& remarks, bool on_stdout, core::Problems& warnings) {
-    on_stdout ? shell.remark(remarks) : shell.show(remarks);
+/// Says them and keeps them.
+void tell(Shell& shell, const core::Problems& remarks, core::Problems& warnings) {
+    shell.show(remarks);
     keep(remarks, warnings);
 }
 
@@ -235,11 +235,11 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
         if (!text.empty()) {
             print_held ? shell.print(text) : shell.info(text);
         }
-        print_held ? shell.remark(warnings_) : shell.show(warnings_);
+        shell.show(warnings_);
     }
     for (const auto& table : found.tables) {
         if (remarks) {
-            tell(shell, table.remarks(), print_held, warnings_);
+            tell(shell, table.remarks(), warnings_);
         }
     }
     return std::move(found.tables);
@@ -269,7 +269,7 @@ tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     }
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
-    tell(shell, fitted.remarks(), print_held, warnings_);
+    tell(shell, fitted.remarks(), warnings_);
     return fitted;
 }
 
@@ -290,7 +290,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
     for (const auto& name : quantities_of(table, quantity)) {
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));
         if (remarks) {
-            tell(shell, all.back().remarks(), print_held, warnings_);
+            tell(shell, all.back().remarks(), warnings_);
         }
     }
     return all;

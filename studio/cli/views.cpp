@@ -223,7 +223,7 @@ void use_density(Shell& shell, const ViewsArguments& given, postproc::Field& fie
     const auto density =
         given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
     if (!postproc::bring_to_pascal(field, density)) {
-        shell.warn(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
+        shell.show_warning(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
     }
 }
 

@@ -79,6 +79,48 @@ TEST_F(AddMeasurement, AClockAloneIsEnoughWhereTheGapHasItsName) {
     EXPECT_DOUBLE_EQ(data.runs.front().table.find("gap")->numbers[0], 1e-3);
 }
 
+// A table of ours may not have them; of a logger's table the mapping says the unit.
+TEST_F(AddMeasurement, QuantitiesWithoutAUnitInTheHeadingTakeTheOneThatIsStated) {
+    const fs::path file = table("run.csv", "time,gap,input_force [N]", 0.02);
+    const auto fields = measured_fields(file);
+    ASSERT_EQ(guessed_channels(fields).size(), 1U);  // so that the unit can be said
+    EXPECT_EQ(text_of(guessed_channels(fields)[0]), "gap=gap");
+    NewMeasurement wanted = of(file);
+    wanted.channels = {measured_channel("gap=gap:mm")};
+    write_added(with_new_measurement(study(), wanted));
+    const auto data = dynamics::read_measurements(study() / "measurements" / "flight");
+    const core::Table& run = data.runs.front().table;
+    EXPECT_DOUBLE_EQ(run.find("gap")->numbers[10], 1.1e-3);
+    EXPECT_DOUBLE_EQ(run.find("time")->numbers[50], 1.0);
+    EXPECT_DOUBLE_EQ(run.find("input_force")->numbers[10], 1.1);
+    NewMeasurement silent = of(table("bare.csv", "time,gap,input_force", 0.02));
+    silent.channels = {measured_channel("gap=gap:mm")};
+    silent.name = "bare";
+    try {  // that of the input is said by nobody: not taken for newtons in silence
+        static_cast<void>(with_new_measurement(study(), silent));
+        FAIL() << "taken";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("column 'input_force' has no unit"));
+    }
+}
+
+TEST_F(AddMeasurement, HeadingsAreGuessedByTheWordsThatTablesAreReadWith) {
+    const auto guess = [](const std::string& field, const std::string& unit = {}) {
+        const auto found = guessed_channels({{"", "time", "s"}, {"", field, unit}});
+        return found.empty() ? std::string() : text_of(found[0]);
+    };
+    EXPECT_EQ(guess("rng_cm"), "gap=rng_cm:cm");
+    EXPECT_EQ(guess("Ride height", "mm"), "gap=Ride height");
+    EXPECT_EQ(guess("clearance_mm"), "gap=clearance_mm:mm");
+    EXPECT_EQ(guess("distance", "m"), "gap=distance");
+    EXPECT_EQ(guess("range", "V"), "");  // another dimension
+    EXPECT_EQ(guess("input_force", "N"), "");
+    EXPECT_EQ(guessed_clock({{"", "t_us", ""}, {"", "gap", "mm"}}), "t_us:us");
+    EXPECT_EQ(guessed_clock({{"", "timestamp", "ms"}, {"", "gap", "mm"}}), "timestamp");
+    EXPECT_EQ(guessed_clock({{"", "stamp_ms", ""}, {"", "gap", "mm"}}), "stamp_ms:ms");
+    EXPECT_EQ(guessed_clock({{"", "T", "K"}, {"", "gap", "mm"}}), "");
+}
+
 TEST_F(AddMeasurement, AByteOrderMarkIsNoPartOfAHeading) {
     const fs::path file = table("run.csv", "\xef\xbb\xbftime [s],gap [mm]", 0.02);
     EXPECT_THAT(with_new_measurement(study(), of(file)).dataset_text, HasSubstr("kind = \"time_series\""));

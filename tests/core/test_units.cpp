@@ -35,6 +35,27 @@ TEST(Units, SayWhatAUnitOfAnotherDimensionWasProbablyMeantFor) {
     EXPECT_EQ(mistyped_quantity("rpm"), "");
 }
 
+TEST(Mistyped, StandardDeviationsAreKnownByTheirEnding) {
+    const auto column = [](const std::string& name, const std::string& unit) {
+        Column one;
+        one.name = name;
+        one.unit = one.written_unit = unit;
+        one.numbers = {1, 2};
+        return one;
+    };
+    EXPECT_EQ(meant_name(column("lift_force_sgima", "N")), "lift_force_sigma");
+    EXPECT_EQ(meant_name(column("lift_force_std", "N")), "lift_force_sigma");
+    EXPECT_EQ(meant_name(column("lift_froce_sigma", "N")), "lift_force_sigma");
+    EXPECT_EQ(meant_name(column("drag_froce", "N")), "drag_force");
+    EXPECT_EQ(meant_name(column("lift_force_sigma", "N")), "");
+    EXPECT_EQ(meant_name(column("lift_force_sgima", "m")), "");  // of another dimension
+    EXPECT_EQ(meant_name(column("lift_force_gradient", "N")), "");
+    EXPECT_EQ(meant_name(column("lift_pressure", "N")), "");
+    EXPECT_EQ(heading_for(column("lift_force_sgima", "N"), "lift_force_sigma"), "'lift_force_sigma [N]'");
+    EXPECT_EQ(no_quantity("sped"), "there is no quantity 'sped'");
+    EXPECT_EQ(quantity_hint("sped"), "did you mean 'speed'?");
+}
+
 TEST(Units, ConvertsWhatPeopleWrite) {
     EXPECT_DOUBLE_EQ(convert(5, "mm", "m"), 0.005);
     EXPECT_DOUBLE_EQ(convert(36, "km/h", "m/s"), 10);

@@ -97,6 +97,45 @@ TEST(OpenFoam, ATimeIsChosenOrTheNearestIsNamed) {
     EXPECT_THAT(test::refusal(data("ascii"), options), HasSubstr("0.005"));
 }
 
+TEST(OpenFoam, ANewestTimeWithoutFieldsIsPassedOverAndTold) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    const auto whole = read_field(box);
+    fs::create_directories(box / "0.01" / "uniform");  // a run that was ended while it wrote
+    core::write_file(box / "0.01" / "uniform" / "time", "value 0.01;\n");
+    core::write_file(box / "0.01" / ".p.swp", "an editor's");
+    const auto field = read_field(box);
+    EXPECT_EQ(test::range_of(*field.find("movingWall")->surface, "kinematic_pressure").high,
+              test::range_of(*whole.find("movingWall")->surface, "kinematic_pressure").high);
+    const auto told = std::find_if(field.problems.begin(), field.problems.end(), [](const core::Problem& problem) {
+        return problem.severity == core::Problem::Severity::warning &&
+               problem.message.find("time 0.01 holds no field: the last time that does is read (0.005") == 0;
+    });
+    EXPECT_NE(told, field.problems.end());
+    for (const auto& problem : whole.problems) {
+        EXPECT_THAT(problem.message, testing::Not(HasSubstr("holds no field")));
+    }
+    // A time that is asked for is the one that is read.
+    ReadOptions options;
+    options.time = 0.01;
+    EXPECT_EQ(read_field(box, options).find("movingWall")->find("kinematic_pressure"), nullptr);
+}
+
+TEST(OpenFoam, AFileAmongTheFieldsThatIsNoneIsPassedOverAndTold) {
+    const core::TemporaryFolder folder;
+    const fs::path box = folder.path() / "box";
+    copy_case(data("ascii"), box);
+    core::write_file(box / "0.005" / "notes.txt", "run again with a finer mesh\n");
+    const auto field = read_field(box);
+    EXPECT_NE(field.find("movingWall")->find("kinematic_pressure"), nullptr);
+    EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const core::Problem& problem) {
+        return problem.message == "'notes.txt' lies among the fields and is none: passed over";
+    }));
+    core::write_file(box / "0.005" / "p", "");  // a field that was never written is one that is damaged
+    EXPECT_THAT(test::refusal(box), HasSubstr("the file is empty"));
+}
+
 TEST(OpenFoam, ACaseIsFoundByItsFolderItsFoamFileAndItsControlDict) {
     const core::TemporaryFolder folder;
     copy_case(data("ascii"), folder.path() / "box");

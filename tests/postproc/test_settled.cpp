@@ -118,6 +118,7 @@ TEST_F(SettledTest, AMonitorCountsByItsShareWhateverItsUnit) {
     EXPECT_THAT(steady.why, HasSubstr("lift_force scatters by 0.67"));  // 0.0212 N of 3.16 N
     nlohmann::json json = steady;
     EXPECT_EQ(json["verdict"], "settled");
+    EXPECT_EQ(json["loads"]["lift_force"]["settled"], true);
     EXPECT_NEAR(json["loads"]["lift_force"]["sigma"].get<double>(), 0.0212, 0.002);
 }
 
@@ -127,6 +128,11 @@ TEST_F(SettledTest, ADragThatJumpsByHalfHasNotSettled) {
     EXPECT_EQ(jumping.verdict, SettledVerdict::not_settled) << jumping.why;
     EXPECT_THAT(jumping.why, HasSubstr("drag_force scatters by"));
     EXPECT_GT(jumping.loads.at(0).sigma, 0.2);
+    const nlohmann::json json = jumping;  // its word and that of the load are one
+    EXPECT_EQ(json["verdict"], "not settled");
+    EXPECT_EQ(json["loads"]["drag_force"]["settled"], false);
+    EXPECT_EQ(json["loads"]["drag_force"]["stationary"], true);
+    EXPECT_THAT(json["loads"]["drag_force"]["why_not"].get<std::string>(), HasSubstr("scatters by"));
 }
 
 TEST_F(SettledTest, ACoefficientThatSwingsAboutZeroIsNoForceInNewton) {

@@ -88,8 +88,8 @@ TEST_F(PostprocCommands, ImportSaysWhatIsNoNumber) {
     core::write_file(folder_.path() / "none.csv", none);
     const auto result = run({"import", "none.csv", "--out", "new/none.vtp"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
-    EXPECT_THAT(result.errors,
-                testing::HasSubstr("none.csv: 'pressure' has 2 values that are not numbers: written as NaN"));
+    EXPECT_THAT(result.output,
+                testing::HasSubstr("warning: none.csv: 'pressure' has 2 values that are not a number: written as NaN"));
     EXPECT_THAT(result.errors, testing::HasSubstr("made the folder 'new', which was not there"));
     EXPECT_THAT(run({"import", "a-h5.csv", "--out", "new/a.vtp"}).errors,
                 testing::Not(testing::HasSubstr("the folder")));
@@ -505,8 +505,34 @@ TEST_F(PostprocCommands, OptionsThatAFileHasNoUseForAreTold) {
     EXPECT_THAT(lengths.errors, testing::HasSubstr("its lengths are in m, as it says"));
     EXPECT_EQ(json::parse(lengths.output)["zones"][0]["bounding_box"][1][0], 2.0);
     const std::string box = (test::data_folder() / "openfoam/ascii").string();
-    EXPECT_THAT(run({"info", box, "--length-unit", "mm"}).errors,
+    EXPECT_THAT(run({"info", box, "--length-unit", "mm"}).output,
                 testing::HasSubstr("its lengths are in m, as it says"));
+}
+
+TEST_F(PostprocCommands, PatternsTakeFoldersThatAreCases) {
+    const auto data = test::data_folder() / "openfoam/ascii";
+    const auto copy_of = [&](const char* name) {
+        std::filesystem::create_directories(folder_.path() / "runs");
+        std::filesystem::copy(data, folder_.path() / "runs" / name, std::filesystem::copy_options::recursive);
+    };
+    copy_of("gap5");
+    copy_of("gap10");
+    std::filesystem::create_directories(folder_.path() / "runs" / "notes");
+    core::write_file(folder_.path() / "runs" / "notes" / "why.txt", "notes\n");
+    const json all = run_json({"loads", "runs/*", "--zones", "*Wall*"});
+    ASSERT_EQ(all["files"].size(), 2U);
+    const json by_gap = run_json({"loads", "runs/gap{gap:mm}", "--zones", "*Wall*"});
+    ASSERT_EQ(by_gap["files"].size(), 2U);
+    EXPECT_DOUBLE_EQ(by_gap["files"][0]["conditions"]["gap"].get<double>(), 0.005);
+    EXPECT_DOUBLE_EQ(by_gap["files"][1]["conditions"]["gap"].get<double>(), 0.01);
+    EXPECT_EQ(by_gap["files"][0]["drag_force"], all["files"][0]["drag_force"]);
+    const auto none = run({"loads", "runs/no*"});
+    EXPECT_EQ(none.exit_code, 3);
+    EXPECT_THAT(none.errors, testing::HasSubstr("what fits is a folder, and no OpenFOAM case"));
+    copy_of("gap1O");
+    const auto missed = run({"loads", "runs/gap{gap:mm}", "--zones", "*Wall*"});
+    EXPECT_EQ(missed.exit_code, 0);
+    EXPECT_THAT(missed.output + missed.errors, testing::HasSubstr("gap1O ('1O' is no number"));
 }
 
 TEST_F(PostprocCommands, ImportLosesNoFile) {
@@ -530,7 +556,7 @@ TEST_F(PostprocCommands, ImportLosesNoFile) {
     const auto half = run({"import", "a-h5.csv", "bad.csv", "b-h10.csv", "--out", "half.vtp"});
     EXPECT_EQ(half.exit_code, 3);
     EXPECT_THAT(half.errors, testing::HasSubstr("written before: half-a-h5.vtp; the other 2 files were not"));
-    EXPECT_THAT(run({"import", "a-h5.csv", "--arrays", "presure", "--out", "slip.vtp"}).errors,
+    EXPECT_THAT(run({"import", "a-h5.csv", "--arrays", "presure", "--out", "slip.vtp"}).output,
                 testing::HasSubstr("there is no array 'presure'"));
 }
 

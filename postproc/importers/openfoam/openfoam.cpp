@@ -57,6 +57,17 @@ std::vector<std::pair<double, fs::path>> times_in(const fs::path& folder) {
     return times;
 }
 
+/// Whether the folder of a time holds a field: one that a solver was ended in, or that holds only its clock, does not.
+bool has_fields(const fs::path& time) {
+    core::note_names(time, "[!.]*");
+    std::error_code error;
+    const fs::directory_iterator entries(time, error);
+    return std::any_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
+        std::error_code ignored;
+        return foam_field_name(entry.path().filename().string()) && entry.is_regular_file(ignored);
+    });
+}
+
 class Reader {
 public:
     Reader(const fs::path& path, const ReadOptions& options, core::Progress& progress)
@@ -156,9 +167,22 @@ void Reader::choose_time() {
                              {folder_.string(), {}, {}, {}}});
         return;
     }
-    const std::size_t chosen = options_.time ? step_at(times_, *options_.time, folder_.string()) : times.size() - 1;
-    time_name_ = times[chosen].second.filename().string();
-    if (times.size() > 1 && !options_.time) {
+    if (options_.time) {
+        time_name_ = times[step_at(times_, *options_.time, folder_.string())].second.filename().string();
+        return;
+    }
+    const auto last =
+        std::find_if(times.rbegin(), times.rend(), [](const auto& one) { return has_fields(one.second); });
+    const auto& chosen = last == times.rend() ? times.back() : *last;
+    time_name_ = chosen.second.filename().string();
+    const bool newest = last == times.rend() || last == times.rbegin();
+    const std::string newest_name = times.back().second.filename().string();
+    if (!newest) {
+        problems_.push_back({core::Problem::Severity::warning,
+                             "time " + newest_name + " holds no field: the last time that does is read (" + time_name_ +
+                                 " of " + std::to_string(times.size()) + " times)",
+                             {folder_.string(), {}, {}, {}}});
+    } else if (times.size() > 1) {
         problems_.push_back({core::Problem::Severity::note,
                              "the last of " + std::to_string(times.size()) + " times is read (" + time_name_ + ")",
                              {folder_.string(), {}, {}, {}}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "core/inputs.h"
@@ -395,19 +396,43 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     }
 }
 
+namespace {
+
+/// Notes or a table that somebody put among the fields: neither the header of OpenFOAM's files nor the comment before
+/// it. Empty and packed files are taken for fields.
+bool is_foreign(const fs::path& file) {
+    std::string head(4096, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(stream.gcount()));
+    const std::string_view text = core::trimmed(head);
+    const bool packed = file.extension() == ".gz" || text.starts_with('\x1f');
+    constexpr std::size_t word = 8;  // of "FoamFile": less is a file that was cut
+    return text.size() > word && !packed && !text.starts_with('/') && text.find("FoamFile") == std::string_view::npos;
+}
+
+}  // namespace
+
 void FoamFields::read(const FoamPiece& piece, const fs::path& time) {
     core::note_names(time, "[!.]*");
     std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(time, error)) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(time, ignored)) {
         const std::string name = entry.path().filename().string();
-        if (entry.is_regular_file(error) && name.front() != '.' && !name.ends_with("~")) {
+        if (entry.is_regular_file(ignored) && foam_field_name(name)) {
             files.push_back(entry.path());
         }
     }
     std::sort(files.begin(), files.end());
     for (const auto& file : files) {
         progress_.check();
+        if (is_foreign(file)) {
+            core::note_content(file);
+            problems_.push_back({core::Problem::Severity::warning,
+                                 "'" + file.filename().string() + "' lies among the fields and is none: passed over",
+                                 {file.string(), {}, {}, {}}});
+            continue;
+        }
         const std::size_t before = values_.size();
         try {
             read_field(piece, file);

@@ -35,6 +35,9 @@ struct FoamPiece {
     std::vector<std::size_t> blocks;  ///< of the mesh, one a patch
 };
 
+/// Whether a file of a time's folder is meant as a field, by its name.
+inline bool foam_field_name(const std::string& name) { return name.front() != '.' && !name.ends_with("~"); }
+
 /// Gives every cell and every patch the values of the fields that are asked for.
 class FoamFields {
 public:

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
+#include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/simulate/dormand_prince.h"
 #include "surrogates/dynamics/simulate/feedback.h"
@@ -284,7 +285,7 @@ core::Table ends_of_starts(const Model& model, const core::Table& starts, const 
     table.add_text("class", names);
     table.add_text("kind", kinds);
     table.add_numbers("time", "s", times);
-    table.add_numbers("outside_table", "1", outside);
+    table.add_numbers(outside_table_column, "1", outside);
     return table;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/file.h"
+#include "core/heading.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -386,11 +388,62 @@ LogChannels LogChannels::with_csv_clock() const {
     return own;
 }
 
+namespace {
+
+/// The unit that the data set states for a column: of a channel, or of a clock; empty: none.
+std::string stated_unit(const LogChannels& channels, const std::string& column) {
+    for (const LogChannel& channel : channels.channels) {
+        if (channel.field == column && !channel.unit.empty()) {
+            return channel.unit;
+        }
+        if (channel.clock == column) {
+            return channel.clock_unit.empty() ? channels.clock_unit : channel.clock_unit;
+        }
+    }
+    return {};
+}
+
+/// The header's line of a table, from where to where.
+std::pair<std::size_t, std::size_t> header_line(std::string_view text) {
+    std::size_t begin = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    while (begin < text.size()) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = core::trimmed(text.substr(begin, end - begin));
+        if (!line.empty() && line.front() != '#') {
+            return {begin, end};
+        }
+        begin = end + 1;
+    }
+    return {text.size(), text.size()};
+}
+
+/// A table whose columns are called by quantities without a unit ("gap, input_force"), which a table of ours may not
+/// have: those whose unit the data set states are read with it.
+core::Table read_with_stated_units(const std::filesystem::path& file, const LogChannels& channels) {
+    const core::MappedFile mapped(file);
+    const std::string_view text = mapped.bytes();
+    const auto [begin, end] = header_line(text);
+    std::string header;
+    bool changed = false;
+    for (const std::string_view cell : core::split(core::trimmed(text.substr(begin, end - begin)), ',')) {
+        const auto heading = core::heading_text(cell);
+        const bool bare = heading && !heading->unit && core::find_quantity(heading->name) != nullptr;
+        const std::string unit = bare ? stated_unit(channels, heading->name) : "";
+        header += (header.empty() ? "" : ",") + std::string(cell) + (unit.empty() ? "" : " [" + unit + "]");
+        changed = changed || !unit.empty();
+    }
+    return changed ? core::read_csv(std::string(text.substr(0, begin)) + header + std::string(text.substr(end)),
+                                    file.string())
+                   : core::read_csv(text, file.string());
+}
+
+}  // namespace
+
 core::Table read_csv_channels(const std::filesystem::path& file, const LogChannels& channels, const LogWindow& window,
                               core::Problems& problems) {
     const LogChannels own = channels.with_csv_clock();
     ChannelSink sink(own, window);
-    send_csv(core::read_csv(file), own, true, sink);
+    send_csv(read_with_stated_units(file, own), own, true, sink);
     return merged(file.string(), own, sink.readings(), window, problems);
 }
 

@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/logs/log_channels.h"
 #include "surrogates/dynamics/model/file_formats.h"
 #include "surrogates/dynamics/model/measurement_setup.h"
+#include "surrogates/dynamics/model/simulated_columns.h"
 
 namespace underbody::dynamics {
 
@@ -19,12 +20,8 @@ namespace {
 const core::QuantityName& known_quantity(const std::string& name, const char* what, const core::Place& place) {
     const core::QuantityName* quantity = core::find_quantity(name);
     if (quantity == nullptr) {
-        std::vector<std::string> known;
-        for (const core::QuantityName& one : core::quantity_names()) {
-            known.push_back(one.name);
-        }
-        throw core::InputError("name", std::string(what) + " of an unknown quantity '" + name + "'", place,
-                               core::did_you_mean(name, known));
+        throw core::InputError("name", std::string(what) + ": " + core::no_quantity(name), place,
+                               core::quantity_hint(name));
     }
     return *quantity;
 }
@@ -206,9 +203,9 @@ void check_names(const MeasuredRun& run, bool time_series, core::Problems& probl
     for (const core::Column& column : run.table.columns()) {
         const std::string base =
             column.name.ends_with("_sigma") ? column.name.substr(0, column.name.size() - 6) : column.name;
-        const std::string meant = core::meant_quantity(column);
+        const std::string meant = core::meant_name(column);
         const bool lacking = !meant.empty() && run.table.find(meant) == nullptr && run.conditions.count(meant) == 0;
-        if (core::find_quantity(base) != nullptr || (column.is_text() && !lacking)) {
+        if (core::find_quantity(base) != nullptr || is_simulated(column.name) || (column.is_text() && !lacking)) {
             continue;
         }
         const core::Place place = run.table.place(0, column.name);

@@ -1,5 +1,7 @@
 #include "surrogates/dynamics/model/table_notes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/counted.h"
@@ -49,6 +51,65 @@ core::Problems held_outside(const Model& model, const Conditions& held) {
                      axis.unit + ": its end value is held, the force is that at " +
                      core::format_number(held[channel] < axis.lower ? axis.lower : axis.upper, 6) + " " + axis.unit,
                  {source.table_path.string(), {}, {}, {}}});
+        }
+    }
+    return found;
+}
+
+namespace {
+
+/// The values of all runs beyond one axis of a table.
+struct Beyond {
+    double lowest = 0, highest = 0;
+    std::size_t rows = 0, of = 0;
+    std::string run;  ///< the first
+};
+
+Beyond beyond_axis(const Model& model, const Measurements& data, Channel channel, const tables::TableAxis& axis) {
+    Beyond found;
+    const double rounding = 1e-9 * (axis.upper - axis.lower);
+    for (const MeasuredRun& run : data.runs) {
+        std::vector<double> values = run.values(channel_name(channel));
+        if (values.empty() && model.conditions.has(channel)) {
+            values.assign(run.table.rows(), model.conditions[channel]);
+        }
+        for (const double value : values) {
+            found.of += std::isfinite(value) ? 1 : 0;
+            if (!(value < axis.lower - rounding || value > axis.upper + rounding)) {
+                continue;
+            }
+            found.lowest = found.rows == 0 ? value : std::min(found.lowest, value);
+            found.highest = found.rows == 0 ? value : std::max(found.highest, value);
+            found.run = found.rows++ == 0 ? run.name : found.run;
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+core::Problems runs_outside(const Model& model, const Measurements& data) {
+    core::Problems found;
+    const auto number = [](double value) { return core::format_number(value, 6); };
+    for (const ForceSource& source : model.forces) {
+        for (std::size_t k = 0; k < source.axes.size(); ++k) {
+            if (source.axes[k] == Channel::gap && data.kind == MeasurementKind::time_series) {
+                continue;  // what becomes of its readings outside is for each use to say
+            }
+            const tables::TableAxis& axis = source.table.axes()[k];
+            const Beyond beyond = beyond_axis(model, data, source.axes[k], axis);
+            if (beyond.rows == 0) {
+                continue;
+            }
+            found.push_back({core::Problem::Severity::warning,
+                             axis.name + " is " + number(beyond.lowest) +
+                                 (beyond.highest > beyond.lowest ? " to " + number(beyond.highest) : "") + " " +
+                                 axis.unit + " in " + std::to_string(beyond.rows) + " of " +
+                                 core::counted(beyond.of, "measured row") + " (first in run " + beyond.run +
+                                 "), outside the " + source.quantity + " table " + source.table_file +
+                                 ", which covers " + number(axis.lower) + " to " + number(axis.upper) + " " +
+                                 axis.unit + ": its end value is held there",
+                             {source.table_path.string(), {}, {}, {}}});
         }
     }
     return found;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
@@ -19,5 +20,10 @@ nlohmann::json fits_json(const Model& model);
 /// A warning for every held condition that lies outside an axis of a force table: the table holds its end value there.
 /// `held`: what is given over the model's own conditions; what varies in the motion is not among them.
 core::Problems held_outside(const Model& model, const Conditions& held);
+
+/// The same of what was measured: a warning for every axis of a force table beyond which measured values lie (columns,
+/// conditions of the runs, else the model's), with the range that they have there and in how many rows. Not of the gap
+/// of a time series: predictions, estimates and discovery say themselves what becomes of its readings outside.
+core::Problems runs_outside(const Model& model, const Measurements& data);
 
 }  // namespace underbody::dynamics

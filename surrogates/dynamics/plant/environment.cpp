@@ -72,10 +72,30 @@ core::Problems effects_without_motion(const Model& model) {
     return remarks;
 }
 
+namespace {
+
+/// A condition holds from long before the start, and what an actuator makes of a constant late or slowly is that
+/// constant. Who declares a delay or a lag and gives a constant may have meant a step.
+core::Problems held_before_start(const Model& model, const Conditions& held) {
+    const bool late = std::any_of(model.effects.begin(), model.effects.end(), [](const EffectUse& use) {
+        return use.name == "input_delay" || use.name == "actuator_lag";
+    });
+    if (!late || held.get(Channel::input_force, 0) == 0) {
+        return {};
+    }
+    return {{core::Problem::Severity::warning,
+             "input_force is a condition: it has acted since long before the start, so that the declared delay and lag "
+             "of the actuator do not show; a force that begins at a time is an input over time, 0 before it",
+             {}}};
+}
+
+}  // namespace
+
 core::Problems motion_remarks(const Model& model, const Conditions& held) {
     core::Problems remarks = model.remarks;
+    const Conditions all = held.over(model.conditions);
     for (const core::Problems& more :
-         {effects_without_motion(model), held_outside(model, held.over(model.conditions))}) {
+         {effects_without_motion(model), held_outside(model, all), held_before_start(model, all)}) {
         remarks.insert(remarks.end(), more.begin(), more.end());
     }
     return remarks;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
@@ -308,7 +309,7 @@ core::Table Trajectory::table() const {
     table.add_numbers("gap", "m", gap);
     table.add_numbers("heave_velocity", "m/s", heave_velocity);
     table.add_numbers("lift_force", "N", lift_force);
-    table.add_numbers("heave_drag", "N", heave_drag);
+    table.add_numbers(heave_drag_column, "N", heave_drag);
     table.add_numbers("input_force", "N", input_force);
     add_outside(table, outside);
     return table;

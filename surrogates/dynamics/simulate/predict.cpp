@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/pitch_predict.h"
@@ -83,7 +84,6 @@ Prediction predict_static(const Model& model, const Measurements& data) {
             shown.push_back(channel);
         }
     }
-    std::size_t outside_count = 0;
     std::map<std::string, ChannelScore> scores;
     std::vector<StaticModel> models;
     for (const std::string& quantity : quantities) {
@@ -98,16 +98,14 @@ Prediction predict_static(const Model& model, const Measurements& data) {
                 find_channel(channel, which);
                 columns[channel].push_back(point[which]);
             }
-            bool outside = false;
             for (std::size_t q = 0; q < quantities.size(); ++q) {
                 const core::Column* column = run.table.find(quantities[q]);
                 const double measured = column ? column->numbers[row] : std::nan("");
-                const double predicted = models[q](point, &outside);
+                const double predicted = models[q](point);
                 columns[quantities[q]].push_back(measured);
                 columns[quantities[q] + "_predicted"].push_back(predicted);
                 scores[quantities[q]].take(predicted - measured);
             }
-            outside_count += outside ? 1 : 0;
         }
     }
     out.table.add_text("run", names);
@@ -121,13 +119,6 @@ Prediction predict_static(const Model& model, const Measurements& data) {
         out.table.add_numbers(quantity, unit, columns[quantity]);
         out.table.add_numbers(quantity + "_predicted", unit, columns[quantity + "_predicted"]);
         out.channels.push_back(error_of(quantity, unit, scores[quantity], data));
-    }
-    if (outside_count > 0) {
-        out.remarks.push_back(
-            {core::Problem::Severity::warning,
-             std::to_string(outside_count) +
-                 " set points lie outside the range of a force table, which holds its end value there",
-             {}});
     }
     return out;
 }
@@ -446,7 +437,7 @@ void remark_unused(const SeriesPrediction& all, const Model& model, const Measur
         }
         if (inside.outside > 0 && !all.outside_too) {
             const std::span<const double> time(predictor.time());
-            say(unused_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
+            say(outside_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
         } else if (all.rows[r].empty()) {
             say("run " + run + " is shorter than the time a prediction needs and was left out");
         }
@@ -666,6 +657,8 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     Prediction prediction = data.kind == MeasurementKind::steady ? predict_static(model, data)
                                                                  : predict_series(model, data, options, progress);
     prediction.remarks.insert(prediction.remarks.begin(), data.problems.begin(), data.problems.end());
+    const core::Problems outside = runs_outside(model, data);
+    prediction.remarks.insert(prediction.remarks.end(), outside.begin(), outside.end());
     const bool pushed =
         std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) { return run.has("input_force"); });
     for (const EffectUse& use : model.effects) {

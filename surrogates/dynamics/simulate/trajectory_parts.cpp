@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/simulated_columns.h"
 
 namespace underbody::dynamics {
 
@@ -38,7 +39,7 @@ void add_thrusts(core::Table& table, const std::vector<std::string>& jets,
 }
 
 void add_outside(core::Table& table, const std::vector<bool>& outside) {
-    table.add_numbers("outside_table", "1", std::vector<double>(outside.begin(), outside.end()));
+    table.add_numbers(outside_table_column, "1", std::vector<double>(outside.begin(), outside.end()));
 }
 
 void write_table(nlohmann::json& json, const std::string& end, const core::Table& table) {

@@ -25,14 +25,17 @@ bool varies(const core::Column& column) {
                      column.numbers.end();
 }
 
-/// What to write instead; nothing for a column that is fine as it is, or no axis.
+/// What to write instead; nothing for a column that is fine as it is, or means nothing that the table lacks. An axis is
+/// lacking where something varies; the error of a force also where it is one number.
 std::optional<std::string> better_heading(const core::Table& table, const core::Column& column) {
-    const std::string axis = core::meant_quantity(column, core::Likeness::possible);
     const auto& axes = axis_names();
-    if (std::find(axes.begin(), axes.end(), axis) == axes.end() || table.find(axis) != nullptr) {
+    const std::string axis = core::meant_quantity(column, core::Likeness::possible);
+    const bool is_axis = std::find(axes.begin(), axes.end(), axis) != axes.end();
+    const std::string meant = is_axis ? axis : core::meant_name(column);
+    if (meant.empty() || table.find(meant) != nullptr || (is_axis && !varies(column))) {
         return std::nullopt;
     }
-    return core::heading_for(column, axis);
+    return core::heading_for(column, meant);
 }
 
 }  // namespace
@@ -42,8 +45,8 @@ core::Problems unused_columns(const core::Table& table, const std::string& quant
     for (const core::Column& column : table.columns()) {
         const bool text = column.is_text();
         const bool known = column.name == quantity || core::find_quantity(column.name) != nullptr ||
-                           column.name.ends_with("_sigma") || column.name.find("_per_") != std::string::npos;
-        if (known || !varies(column) || (text && !holds_numbers(column))) {
+                           column.name.find("_per_") != std::string::npos;
+        if (known || (text && !holds_numbers(column))) {
             continue;
         }
         const core::Place place{table.source, {}, {}, {}};
@@ -51,7 +54,7 @@ core::Problems unused_columns(const core::Table& table, const std::string& quant
             found.push_back({core::Problem::Severity::warning,
                              "the column '" + column.name + "' is not understood and not used: write " + *better,
                              place});
-        } else if (!text) {
+        } else if (!text && varies(column) && !column.name.ends_with("_sigma")) {
             found.push_back({core::Problem::Severity::note,
                              "the column '" + column.name + "' is not a set point and not used", place});
         }

@@ -8,8 +8,9 @@
 
 namespace underbody::tables {
 
-/// Columns that are no known quantity: those that look like a misnamed axis as warnings with the heading they should
-/// have, other numbers as notes. Columns of words are labels and not told.
+/// Columns that are no known quantity: those that look like a misnamed axis, force or standard deviation (which the
+/// table lacks) as warnings with the heading they should have, other numbers as notes. Columns of words are labels and
+/// not told.
 core::Problems unused_columns(const core::Table& table, const std::string& quantity);
 
 /// The warnings in one line for the hint of an error: "the column 'Gap (mm)' is not understood: write 'gap [mm]'";

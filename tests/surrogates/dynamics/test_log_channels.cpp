@@ -247,7 +247,7 @@ TEST_F(LogChannels, WhatIsWrongIsSaidWithTheNearestName) {
     EXPECT_THAT(refusal(mapping("run.ulg", R"(message = "RFND", field = "Dist", clock = "stamp")", plain_push)),
                 HasSubstr("which is asked for as the clock of gap"));
     EXPECT_THAT(refusal(mapping("run.ulg", plain_gap, plain_push, "channel.gapp = { field = \"x\" }\n")),
-                HasSubstr("a channel of an unknown quantity 'gapp'"));
+                HasSubstr("a channel: there is no quantity 'gapp'"));
     EXPECT_THAT(refusal(mapping("run.ulg", R"(mesage = "RFND", field = "Dist")", plain_push)),
                 HasSubstr("did you mean 'message'?"));
     auto sensors = rig_.sensors(true);
