@@ -208,7 +208,10 @@ void need_openfoam() {
 }
 
 OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
-    : folder_(std::move(folder)), start_(std::chrono::steady_clock::now()), stall_(hung_after()) {
+    : folder_(std::move(folder)),
+      start_(std::chrono::steady_clock::now()),
+      cores_(std::max(1, cores)),
+      stall_(hung_after()) {
     const fs::path script = folder_ / "Allrun";
     if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
         throw core::InputError("missing",
@@ -331,7 +334,7 @@ void OpenFoamRun::look_whether_it_hangs() {
         }
     }
     const ChildProcess::Use use = child_->use();
-    const std::string why = stall_.look(said, use.processor_seconds, seconds(), use.stopped);
+    const std::string why = stall_.look(said, use.processor_seconds / cores_, seconds(), use.stopped);
     if (!why.empty()) {
         stop();
         throw core::InputError("solver", "the solver hangs and was ended: " + why,

@@ -73,6 +73,7 @@ private:
     std::optional<ChildProcess> child_;
     bool watched_ = false;  // the case waits for settled_file
     std::chrono::steady_clock::time_point looked_;
+    int cores_;
     StallWatch stall_;
     void look_at_loads();
     void look_whether_it_hangs();

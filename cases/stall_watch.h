@@ -16,8 +16,8 @@ public:
 
     explicit StallWatch(double limit = usual_limit) : limit_(limit) {}
 
-    /// What is known now. `said`: bytes in its logs; `processor`: s that its processes have used since they began;
-    /// `clock`: s, of a clock that stands still while the machine sleeps. Empty, or in what way it hangs.
+    /// What is known now. `said`: bytes in its logs; `processor`: s that its processes have used since they began, by
+    /// core; `clock`: s, of a clock that stands still while the machine sleeps. Empty, or in what way it hangs.
     std::string look(std::uintmax_t said, double processor, double clock, bool stopped);
 
 private:
