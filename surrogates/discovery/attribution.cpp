@@ -68,12 +68,19 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     std::map<std::vector<std::string>, Attribution::Share> by_names;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
         const FittedHypothesis& one = hypotheses[i];
-        if (one.hypothesis.names.size() > best.hypothesis.names.size()) {
+        if (one.hypothesis.names.size() > best.hypothesis.names.size() && !one.rival) {
             continue;  // a second effect that did not earn its place
         }
         const double evidence = one.score() - one.occam - (best.score() - best.occam);
+        // what an effect beside the same other ones explains owes nothing to their form
+        const std::vector<std::string>& all = best.hypothesis.names;
+        const bool part =
+            one.hypothesis.names.size() < all.size() &&
+            std::includes(all.begin(), all.end(), one.hypothesis.names.begin(), one.hypothesis.names.end());
+        const double softened =
+            part ? 1 + calibration.form_share * std::max(0.0, best.explained - one.explained) : temperature;
         // a number that may as well be the one at which its effect does nothing is no finding
-        const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / temperature + one.occam - best.occam) -
+        const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / softened + one.occam - best.occam) -
                               (any && !finding[i] ? no_finding : 0.0);
         const auto [known, first] = by_names.try_emplace(one.hypothesis.names, Attribution::Share{i, weight});
         if (!first && weight > known->second.probability) {

@@ -92,6 +92,10 @@ Hypothesis make(const dynamics::Effect& effect, const std::vector<std::string>& 
     }
     hypothesis.prior = prior;
     add_starts(hypothesis);
+    const dynamics::EffectInfo& info = effect.info();
+    if (info.seen_in == dynamics::SeenIn::static_set && !info.search.starts.empty() && hypothesis.uses.size() == 1) {
+        hypothesis.starts = info.search.starts;
+    }
     return hypothesis;
 }
 

@@ -47,6 +47,7 @@ struct FittedHypothesis {
     double occam = 0;                   ///< -2 log of the prior volume that the data leave: what free numbers cost
     std::vector<double> cost_of_group;  ///< cost by run (or group of set points)
     std::vector<double> held_out;  ///< cost of each run (group) with numbers from the other runs; empty: not computed
+    bool rival = false;            ///< of more effects than the best single one and of no more free numbers
     double explained = 0;          ///< cost of the model as declared less `cost`
     std::vector<double> explained_by_group;
     /// What numbers fitted to other runs lose: 0 when nothing was held out.

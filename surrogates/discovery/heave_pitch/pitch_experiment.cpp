@@ -15,8 +15,6 @@ using dynamics::pitch_states;
 
 namespace {
 
-constexpr std::size_t runs_for_noise = 3;  ///< the noise is searched for on so many, and judged on all
-
 dynamics::Model with_all(const dynamics::Model& model, const std::vector<dynamics::EffectUse>& uses) {
     dynamics::Model changed = model;
     for (const dynamics::EffectUse& use : uses) {
@@ -109,14 +107,57 @@ double PitchExperiment::cost_of(const std::vector<std::size_t>& chosen, const st
     return std::accumulate(costs.begin(), costs.end(), 0.0);
 }
 
-double PitchExperiment::search(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
-                               const std::vector<double PitchNoise::*>& numbers, const std::vector<std::size_t>& white,
-                               PitchNoise& noise, double factor) const {
+std::vector<LinearPitchRun> PitchExperiment::linear_runs(const std::vector<dynamics::EffectUse>& uses,
+                                                         const PitchNoise& noise) const {
+    const dynamics::Model changed = with_all(model_, uses);
+    std::vector<LinearPitchRun> runs(records_.size());
+    core::parallel_for(runs.size(), [&](std::size_t i) {
+        try {
+            dynamics::PitchRun run(changed, data_.runs[records_[i].run], reading_);
+            runs[i] = linear_pitch(run, records_[i], noise);
+        } catch (const core::Error&) {
+            runs[i].cost = 1e300;
+        }
+    });
+    return runs;
+}
+
+/// The path is the filter's at the noise that the search begins with, and once more at what it finds.
+double PitchExperiment::search(const std::vector<dynamics::EffectUse>& uses, const Numbers& numbers,
+                               const std::vector<std::size_t>& white, PitchNoise& noise) const {
+    constexpr int rounds = 3;  // the last only judges
+    double least = 1e301, factor = 3;
+    PitchNoise there = noise;
+    for (int round = 0; round < rounds; ++round) {
+        const std::vector<LinearPitchRun> runs = linear_runs(uses, there);
+        const double cost = std::accumulate(runs.begin(), runs.end(), 0.0,
+                                            [](double sum, const LinearPitchRun& run) { return sum + run.cost; });
+        const bool better = cost < least - 0.5;
+        if (cost < least) {
+            least = cost;
+            noise = there;
+        }
+        if (!better || cost >= 1e300 || round + 1 == rounds) {
+            break;
+        }
+        search_about(runs, numbers, white, there, factor);
+        factor = std::sqrt(factor);
+    }
+    return least;
+}
+
+void PitchExperiment::search_about(const std::vector<LinearPitchRun>& runs, const Numbers& numbers,
+                                   const std::vector<std::size_t>& white, PitchNoise& noise, double factor) const {
     constexpr double finest = 1.12, enough = 0.5;
     const auto number = [&](PitchNoise& of, std::size_t j) -> double& {
         return j < numbers.size() ? of.*numbers[j] : of.white[white[j - numbers.size()]];
     };
-    double best = cost_of(chosen, uses, noise);
+    const auto cost_of = [&](const PitchNoise& of) {
+        std::vector<double> costs(runs.size());
+        core::parallel_for(runs.size(), [&](std::size_t i) { costs[i] = linear_cost(runs[i], of); });
+        return std::accumulate(costs.begin(), costs.end(), 0.0);
+    };
+    double best = cost_of(noise);
     std::vector<double> last(numbers.size() + white.size(), 1);  // direction that helped
     while (factor > finest) {
         const double before = best;
@@ -125,7 +166,7 @@ double PitchExperiment::search(const std::vector<std::size_t>& chosen, const std
             for (const double direction : {way, -way}) {
                 PitchNoise there = noise;
                 number(there, j) *= std::pow(factor, direction);
-                const double cost = cost_of(chosen, uses, there);
+                const double cost = cost_of(there);
                 if (cost < best) {
                     best = cost;
                     noise = there;
@@ -136,15 +177,12 @@ double PitchExperiment::search(const std::vector<std::size_t>& chosen, const std
         }
         factor = before - best < enough ? std::sqrt(factor) : factor;
     }
-    return best;
 }
 
 double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, PitchNoise& noise) const {
-    std::vector<std::size_t> chosen(std::min(runs_for_noise, records_.size()));
-    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-    const std::vector<double PitchNoise::*> process{&PitchNoise::force, &PitchNoise::moment};
+    const Numbers process{&PitchNoise::force, &PitchNoise::moment};
     const PitchNoise first = noise;
-    const double white = search(chosen, uses, process, channels(), noise, 3);
+    const double white = search(uses, process, channels(), noise);
     constexpr double clearly = 12;  // -2 log likelihood that coloured noise has to win, for three numbers
     PitchNoise best = noise;
     double least = white - clearly;
@@ -158,10 +196,10 @@ double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, 
         coloured.white[2] *= 0.4;
         coloured.force *= 0.1;
         coloured.moment *= 0.1;
-        const double cost = search(chosen, uses,
+        const double cost = search(uses,
                                    {&PitchNoise::gap_slow, &PitchNoise::pitch_slow, &PitchNoise::slow_time,
                                     &PitchNoise::force, &PitchNoise::moment},
-                                   channels(), coloured, 3);
+                                   channels(), coloured);
         if (cost < least) {
             least = cost;
             best = coloured;
@@ -172,9 +210,7 @@ double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, 
 }
 
 double PitchExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses, PitchNoise& noise) const {
-    std::vector<std::size_t> chosen(records_.size());
-    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-    return search(chosen, uses, {&PitchNoise::force, &PitchNoise::moment}, {}, noise, 3);
+    return search(uses, {&PitchNoise::force, &PitchNoise::moment}, {}, noise);
 }
 
 PitchExperiment::Result PitchExperiment::fit(const Hypothesis& hypothesis,

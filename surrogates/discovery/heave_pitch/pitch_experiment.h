@@ -65,10 +65,14 @@ public:
 private:
     double cost_of(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
                    const PitchNoise& noise) const;
-    /// Pattern search over logarithms of numbers of the noise.
-    double search(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
-                  const std::vector<double PitchNoise::*>& numbers, const std::vector<std::size_t>& white,
-                  PitchNoise& noise, double factor) const;
+    [[nodiscard]] std::vector<LinearPitchRun> linear_runs(const std::vector<dynamics::EffectUse>& uses,
+                                                          const PitchNoise& noise) const;
+    /// Pattern search over logarithms of numbers of the noise, about the path of the filter; the cost there.
+    using Numbers = std::vector<double PitchNoise::*>;
+    double search(const std::vector<dynamics::EffectUse>& uses, const Numbers& numbers,
+                  const std::vector<std::size_t>& white, PitchNoise& noise) const;
+    void search_about(const std::vector<LinearPitchRun>& runs, const Numbers& numbers,
+                      const std::vector<std::size_t>& white, PitchNoise& noise, double factor) const;
     const dynamics::Model& model_;
     const dynamics::Measurements& data_;
     std::vector<PitchRecord> records_;

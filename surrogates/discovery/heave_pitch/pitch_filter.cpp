@@ -72,7 +72,14 @@ void linear_step(dynamics::PitchRun& run, std::size_t k, const Vector& x, const 
     added(7, 7) = (1 - decay * decay) * noise.pitch_slow * noise.pitch_slow;
 }
 
-/// Where the filter begins: lines through the first readings, loosely.
+/// How loosely a filter begins about lines through the first readings: variances of gap, velocity, pitch and rate.
+std::array<double, 4> begin_variances(const PitchNoise& noise, double gap_slope, double pitch_slope) {
+    const double gap = noise.total(0), pitch = noise.total(2);
+    return {std::pow(20 * gap, 2), std::pow(0.05 + 10 * gap * std::sqrt(gap_slope), 2), std::pow(20 * pitch, 2),
+            std::pow(0.3 + 10 * pitch * std::sqrt(pitch_slope), 2)};
+}
+
+/// Where the filter begins.
 void begin(const dynamics::PitchRun& run, const PitchRecord& record, const PitchNoise& noise, Vector& x, Matrix& p) {
     const dynamics::StartState gap = dynamics::start_state(run.time(), record.value[0], record.first, record.last),
                                pitch = dynamics::start_state(run.time(), record.value[2], record.first, record.last);
@@ -83,11 +90,8 @@ void begin(const dynamics::PitchRun& run, const PitchRecord& record, const Pitch
     x[2] = pitch.gap - terms.pitch.sensor_bias;
     x[3] = pitch.velocity;
     p.setZero();
-    const double gap_sigma = noise.total(0), pitch_sigma = noise.total(2);
-    p(0, 0) = std::pow(20 * gap_sigma, 2);
-    p(1, 1) = std::pow(0.05 + 10 * gap_sigma * std::sqrt(gap.slope_factor), 2);
-    p(2, 2) = std::pow(20 * pitch_sigma, 2);
-    p(3, 3) = std::pow(0.3 + 10 * pitch_sigma * std::sqrt(pitch.slope_factor), 2);
+    const std::array<double, 4> loose = begin_variances(noise, gap.slope_factor, pitch.slope_factor);
+    p.diagonal().head<4>() = Eigen::Map<const Eigen::Vector4d>(loose.data());
     const double unknown = 10;  // s: the walk of a force over that long
     p(4, 4) = unknown * noise.force_walk * noise.force_walk;
     p(5, 5) = unknown * noise.moment_walk * noise.moment_walk;
@@ -175,6 +179,87 @@ double filter_pitch(dynamics::PitchRun& run, const PitchRecord& record, const Pi
         if (trace != nullptr) {
             store(trace->step.emplace_back(), step);
         }
+    }
+    return std::isfinite(cost) ? cost : 1e300;
+}
+
+LinearPitchRun linear_pitch(dynamics::PitchRun& run, const PitchRecord& record, const PitchNoise& noise) {
+    LinearPitchRun out;
+    std::vector<double> innovations;
+    out.cost = filter_pitch(run, record, noise, innovations, &out.trace);
+    out.trace.covariance = {};
+    out.trace.predicted_covariance = {};
+    out.trace.updates = {};
+    out.delay = run.plant().vertical().terms.sensor_delay;
+    out.slope_factor = {dynamics::start_state(run.time(), record.value[0], record.first, record.last).slope_factor,
+                        dynamics::start_state(run.time(), record.value[2], record.first, record.last).slope_factor};
+    for (std::size_t k = 0; k < out.trace.state.size(); ++k) {
+        const std::size_t sample = record.first + k;
+        const PitchTrace::Column& x = out.trace.state[k];
+        out.residual.emplace_back().fill(std::nan(""));
+        for (std::size_t i = 0; i < pitch_states; ++i) {
+            if (!record.value[i].empty()) {
+                out.residual.back()[i] = record.value[i][sample] - run.reading(sample, i, {x[0], x[1], x[2], x[3]});
+            }
+        }
+        if (k < out.trace.step.size()) {
+            out.width.push_back(run.time()[sample + 1] - run.time()[sample]);
+        }
+    }
+    return out;
+}
+
+double linear_cost(const LinearPitchRun& run, const PitchNoise& noise) {
+    // motion less that of the path, then coloured noise of gap and pitch
+    Eigen::Matrix<double, 6, 1> x = Eigen::Matrix<double, 6, 1>::Zero(), h, ph;
+    Eigen::Matrix<double, 6, 6> p = Eigen::Matrix<double, 6, 6>::Zero();
+    const auto off_path = [&](std::size_t k) -> Eigen::Vector4d {
+        return Eigen::Map<const Vector>(run.trace.predicted[k].data()).head<4>() -
+               Eigen::Map<const Vector>(run.trace.state[k].data()).head<4>();
+    };
+    const std::array<double, 4> loose = begin_variances(noise, run.slope_factor[0], run.slope_factor[1]);
+    p.diagonal() << loose[0], loose[1], loose[2], loose[3], noise.gap_slow * noise.gap_slow,
+        noise.pitch_slow * noise.pitch_slow;
+    x.head<4>() = off_path(0);
+    double cost = 0;
+    for (std::size_t k = 0; k < run.residual.size(); ++k) {
+        for (std::size_t i = 0; i < pitch_states; ++i) {
+            if (!std::isfinite(run.residual[k][i])) {
+                continue;
+            }
+            h.setZero();
+            h[static_cast<int>(i)] = 1;
+            h[1] -= i == 0 ? run.delay : 0;
+            if (slow_of(i) >= 0) {
+                h[slow_of(i) - 2] = 1;
+            }
+            ph = p * h;
+            const double variance = h.dot(ph) + noise.white[i] * noise.white[i];
+            const double error = run.residual[k][i] - h.dot(x);
+            if (!(variance > 0)) {
+                continue;
+            }
+            cost += error * error / variance + std::log(variance);
+            x += ph * (error / variance);
+            p -= ph * (ph / variance).transpose();
+        }
+        if (k == run.width.size()) {
+            break;
+        }
+        const double dt = run.width[k], decay = std::exp(-dt / noise.slow_time);
+        const Eigen::Map<const Matrix> step(run.trace.step[k].data());
+        const Matrix4 a = step.topLeftCorner<4, 4>();
+        const Loads random = step.block<4, 2>(0, 4) / dt;
+        x.head<4>() = (a * x.head<4>() + off_path(k + 1)).eval();
+        x.tail<2>() *= decay;
+        p.topLeftCorner<4, 4>() = (a * p.topLeftCorner<4, 4>() * a.transpose()).eval();
+        p.topLeftCorner<4, 4>() += dt * (noise.force * noise.force * random.col(0) * random.col(0).transpose() +
+                                         noise.moment * noise.moment * random.col(1) * random.col(1).transpose());
+        p.topRightCorner<4, 2>() = (decay * a * p.topRightCorner<4, 2>()).eval();
+        p.bottomLeftCorner<2, 4>() = p.topRightCorner<4, 2>().transpose();
+        p.bottomRightCorner<2, 2>() *= decay * decay;
+        p(4, 4) += (1 - decay * decay) * noise.gap_slow * noise.gap_slow;
+        p(5, 5) += (1 - decay * decay) * noise.pitch_slow * noise.pitch_slow;
     }
     return std::isfinite(cost) ? cost : 1e300;
 }

@@ -57,6 +57,20 @@ struct PitchTrace {
 double filter_pitch(dynamics::PitchRun& run, const PitchRecord& record, const PitchNoise& noise,
                     std::vector<double>& innovations, PitchTrace* trace = nullptr);
 
+/// A run about the path that the filter took, as far as a search of the noise needs it: with its steps held fixed the
+/// filter is linear and asks the model nothing.
+struct LinearPitchRun {
+    double cost = 0;   ///< -2 log likelihood by the filter itself, at the noise of the path; 1e300 where it ran away
+    PitchTrace trace;  ///< without covariances and updates
+    std::vector<std::array<double, dynamics::pitch_states>> residual;  ///< reading less that of the path; NaN: none
+    std::vector<double> width;                                         ///< s, of the steps
+    std::array<double, 2> slope_factor{};                              ///< of the start, gap and pitch
+    double delay = 0;                                                  ///< s, of the gap's reading
+};
+LinearPitchRun linear_pitch(dynamics::PitchRun& run, const PitchRecord& record, const PitchNoise& noise);
+/// -2 log likelihood of a linear run with this noise (without a walk of the loads).
+double linear_cost(const LinearPitchRun& run, const PitchNoise& noise);
+
 /// Change of the innovations by a small force (axis 0) or moment (axis 1) at each sample of the record, to first order;
 /// appended.
 void linear_answer(const PitchTrace& trace, const PitchRecord& record, std::size_t axis,

@@ -1,6 +1,8 @@
 // What a verdict may say: judged by runs that nothing was fitted to, beside twins in which nothing is missing.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -14,8 +16,9 @@ using dynamics::pitch_states;
 
 namespace {
 
-constexpr std::size_t blocks_wanted = 12;  ///< of held-out runs: enough for Student's t, each of several windows
-constexpr std::size_t twins_each = 2;      ///< draws of noise for each window
+constexpr std::size_t blocks_wanted = 12;     ///< of held-out runs: enough for Student's t, each of several windows
+constexpr std::size_t twins_each = 2;         ///< draws of noise for each window
+constexpr std::size_t twins_for_chance = 24;  ///< the same, where it matters how much they differ
 
 void add(WindowSquares& windows, std::size_t run, const std::vector<double>& errors) {
     windows.record.push_back(run);
@@ -86,16 +89,44 @@ bool PitchLoop::falls(const Answer& before, const Answer& after) const {
         .falls();
 }
 
-std::vector<double> PitchLoop::twins_error(const Answer& answer) const {
-    std::vector<std::vector<double>> squares(answer.runs.size(), std::vector<double>(channels_.size(), 0)),
-        counts = squares;
+double PitchLoop::Twins::error(std::size_t channel) const {
+    double sum = 0, draws = 0;
+    for (const std::vector<double>& window : square[channel]) {
+        sum += std::accumulate(window.begin(), window.end(), 0.0);
+        draws = std::max(draws, static_cast<double>(window.size()));
+    }
+    return count[channel] > 0 && draws > 0 ? std::sqrt(sum / draws / count[channel]) : 0;
+}
+
+double PitchLoop::Twins::chance(std::size_t channel, double error, std::uint64_t seed) const {
+    constexpr int sets = 4000;
+    core::Random random(seed, channel);
+    int larger = 0;
+    for (int set = 0; set < sets; ++set) {
+        double sum = 0;
+        for (const std::vector<double>& window : square[channel]) {
+            sum += window.empty() ? 0 : window[random.below(window.size())];
+        }
+        larger += sum >= error * error * count[channel] ? 1 : 0;
+    }
+    return (larger + 1.0) / (sets + 1.0);
+}
+
+PitchLoop::Twins PitchLoop::twins_of(const Answer& answer, std::size_t draws) const {
+    using Squares = std::vector<std::vector<double>>;  // by window and draw
+    const std::size_t runs = answer.runs.size();
+    std::vector<std::vector<Squares>> squares(runs, std::vector<Squares>(channels_.size()));
+    std::vector<std::vector<double>> counts(runs, std::vector<double>(channels_.size(), 0));
     core::parallel_for(
-        answer.runs.size(),
+        runs,
         [&](std::size_t r) {
             dynamics::PitchRun& run = *answer.runs[r].run;
             core::Random random(options_.seed + 77, r);
             for (const dynamics::PitchWindow& window : answer.runs[r].windows) {
-                for (std::size_t draw = 0; draw < twins_each; ++draw) {
+                for (Squares& own : squares[r]) {
+                    own.emplace_back();
+                }
+                for (std::size_t draw = 0; draw < draws; ++draw) {
                     dynamics::PitchReadings twin = run.readings();
                     for (const std::size_t i : channels_) {
                         const std::vector<double> noise =
@@ -114,44 +145,51 @@ std::vector<double> PitchLoop::twins_error(const Answer& answer) const {
                         dynamics::motion_from(run, *state, window.from, window.end);
                     for (std::size_t c = 0; c < channels_.size(); ++c) {
                         const std::vector<double>& read = twin.value[channels_[c]];
+                        std::vector<double> errors;
                         for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
                             const double error = run.reading(k, channels_[c], motion[k - window.from]) - read[k];
                             if (std::isfinite(error)) {
-                                squares[r][c] += error * error;
-                                counts[r][c] += 1;
+                                errors.push_back(error);
                             }
                         }
+                        counts[r][c] += squares[r][c].back().empty() ? static_cast<double>(errors.size()) : 0;
+                        squares[r][c].back().push_back(sum_of_squares(errors));
                     }
                 }
             }
         },
         progress_);
-    std::vector<double> errors;
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-        double square = 0, count = 0;
-        for (std::size_t r = 0; r < squares.size(); ++r) {
-            square += squares[r][c];
-            count += counts[r][c];
+    Twins twins{std::vector<Squares>(channels_.size()), std::vector<double>(channels_.size(), 0)};
+    for (std::size_t r = 0; r < runs; ++r) {
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            twins.square[c].insert(twins.square[c].end(), squares[r][c].begin(), squares[r][c].end());
+            twins.count[c] += counts[r][c];
         }
-        errors.push_back(count > 0 ? std::sqrt(square / count) : 0);
     }
-    return errors;
+    return twins;
 }
 
-/// Judged channel by channel: a moment that is missing may leave the gap's error as small as noise.
+/// Judged channel by channel: a moment that is missing may leave the gap's error as small as noise. A few windows in
+/// coloured noise differ much from each other: their error is also noise where noise makes it often enough.
 bool PitchLoop::rest_is_noise(const Answer& answer) {
-    const std::vector<double> twins = twins_error(answer);
+    const Twins few = twins_of(answer, twins_each);
+    std::optional<Twins> many;
     const std::size_t runs = test_data_.runs.size();
     double worst = -1;
     bool noise = true;
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         const double error = answer.error(c, runs), unit = null_noise_.total(channels_[c]);
-        noise = noise && error <= calibration_.most_over_twins * twins[c];
-        const double ratio = twins[c] > 0 ? error / twins[c] : 0;
+        bool own = error <= calibration_.most_over_twins * few.error(c);
+        if (!own) {
+            many = many ? many : twins_of(answer, twins_for_chance);
+            own = many->chance(c, error, options_.seed + 78) > calibration_.rest_chance;
+        }
+        noise = noise && own;
+        const double twins = (many ? *many : few).error(c), ratio = twins > 0 ? error / twins : 0;
         if (ratio > worst) {  // in noises of that channel; report_error gives them the unit of the first error
             worst = ratio;
-            result_.rest.twins = twins[c] / unit;
-            result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - twins[c] * twins[c])) / unit;
+            result_.rest.twins = twins / unit;
+            result_.rest.unexplained = std::sqrt(std::max(0.0, error * error - twins * twins)) / unit;
         }
     }
     result_.rest.is_noise = noise;
@@ -159,13 +197,13 @@ bool PitchLoop::rest_is_noise(const Answer& answer) {
 }
 
 double PitchLoop::share_left(const Answer& declared, const Answer& answer) const {
-    const std::vector<double> twins = twins_error(answer);
+    const Twins twins = twins_of(answer, twins_each);
     const std::size_t runs = test_data_.runs.size();
     double missed = 0, left = 0;
     for (std::size_t c = 0; c < channels_.size(); ++c) {
-        const double unit = null_noise_.total(channels_[c]);
-        missed += (std::pow(declared.error(c, runs), 2) - twins[c] * twins[c]) / (unit * unit);
-        left += (std::pow(answer.error(c, runs), 2) - twins[c] * twins[c]) / (unit * unit);
+        const double unit = null_noise_.total(channels_[c]), noise = std::pow(twins.error(c), 2);
+        missed += (std::pow(declared.error(c, runs), 2) - noise) / (unit * unit);
+        left += (std::pow(answer.error(c, runs), 2) - noise) / (unit * unit);
     }
     return missed > 0 ? std::max(left, 0.0) / missed : 0;
 }

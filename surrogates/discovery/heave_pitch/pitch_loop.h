@@ -73,9 +73,16 @@ private:
     [[nodiscard]] dynamics::Model model_with(const std::vector<dynamics::EffectUse>& uses) const;
     [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const;
     [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
-    /// Error of twins of the held-out windows by channel, in SI: the model with these effects and the noise of the
-    /// sensors alone.
-    [[nodiscard]] std::vector<double> twins_error(const Answer& answer) const;
+    /// Twins of the held-out windows: the model with these effects and the noise of the sensors alone. By channel of
+    /// channels_, in SI.
+    struct Twins {
+        std::vector<std::vector<std::vector<double>>> square;  ///< sum of a window's, by channel, window and draw
+        std::vector<double> count;                             ///< readings of one draw
+        [[nodiscard]] double error(std::size_t channel) const;
+        /// How often such twins have this error or a larger one: each window with one of its draws.
+        [[nodiscard]] double chance(std::size_t channel, double error, std::uint64_t seed) const;
+    };
+    [[nodiscard]] Twins twins_of(const Answer& answer, std::size_t draws) const;
     /// Compares with the twins, and keeps what is unexplained.
     bool rest_is_noise(const Answer& answer);
     [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;

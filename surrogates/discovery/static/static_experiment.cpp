@@ -230,6 +230,25 @@ void StaticExperiment::residuals(const std::vector<std::size_t>& chosen, const s
     whiten(chosen, out.data());
 }
 
+namespace {
+
+/// Of many starts the two that lead furthest down in two steps, where they arrived.
+template <class FitFrom>
+void keep_promising(std::vector<std::vector<double>>& starts, const FitFrom& fit_from) {
+    constexpr std::size_t few = 4;
+    if (starts.size() <= few) {
+        return;
+    }
+    std::vector<Fit> begun;
+    for (const std::vector<double>& start : starts) {
+        begun.push_back(fit_from(start, {.iterations = 2}));
+    }
+    std::stable_sort(begun.begin(), begun.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
+    starts = {begun[0].parameters, begun[1].parameters};
+}
+
+}  // namespace
+
 FittedHypothesis StaticExperiment::fit(const Hypothesis& hypothesis, const std::vector<std::size_t>& chosen) const {
     FittedHypothesis best;
     best.hypothesis = hypothesis;
@@ -241,13 +260,17 @@ FittedHypothesis StaticExperiment::fit(const Hypothesis& hypothesis, const std::
     if (starts.empty()) {
         starts.push_back(hypothesis.start());
     }
-    bool first = true;
-    for (const std::vector<double>& start : starts) {
+    const auto fit_from = [&](const std::vector<double>& start, const FitOptions& options) {
         std::vector<FitParameter> parameters = hypothesis.parameters;
         for (std::size_t j = 0; j < parameters.size(); ++j) {
             parameters[j].start = start[j];
         }
-        Fit fit = least_squares(parameters, evaluate);
+        return least_squares(parameters, evaluate, options);
+    };
+    keep_promising(starts, fit_from);
+    bool first = true;
+    for (const std::vector<double>& start : starts) {
+        Fit fit = fit_from(start, {});
         if (first || fit.cost < best.fit.cost) {
             best.fit = std::move(fit);
             first = false;

@@ -49,7 +49,7 @@ private:
     /// for left_over() alone.
     void try_two();
     /// A second effect is looked for only where the best single one leaves structure, and stays only when it earns its
-    /// place.
+    /// place; or, as a rival, where the best single one has two free numbers and the two together no more.
     void fit_pairs();
     /// Two laws of which each does far more than both together (a gain of seven beside a power that undoes it) are no
     /// two effects: they bend into a law that neither has.

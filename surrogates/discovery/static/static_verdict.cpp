@@ -51,6 +51,23 @@ void StaticLoop::open_gate() {
     result_.depends_on = whole_.variables;
 }
 
+namespace {
+
+/// Beside a strong effect another one lies elsewhere than alone: a law with starts of its own begins at all of them
+/// again.
+Hypothesis from_many_starts(const FittedHypothesis& first, const Hypothesis& second) {
+    const dynamics::EffectInfo& info = dynamics::effect(second.names.front()).info();
+    const bool many = info.seen_in == dynamics::SeenIn::static_set && !info.search.starts.empty();
+    const std::vector<double> begin = second.starts.empty() ? second.start() : second.starts.front();
+    Hypothesis both = joined(first.hypothesis, first.fit.parameters, second, begin);
+    for (std::size_t k = 0; many && k < second.starts.size(); ++k) {
+        both.starts.push_back(joined(first.hypothesis, first.fit.parameters, second, second.starts[k]).start());
+    }
+    return both;
+}
+
+}  // namespace
+
 std::vector<FittedHypothesis> StaticLoop::pairs_of_leaders() const {
     std::vector<std::size_t> order(singles_);
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -80,9 +97,9 @@ std::vector<FittedHypothesis> StaticLoop::pairs_of_leaders() const {
         pairs.size(),
         [&](std::size_t k) {
             const auto [a, b] = pairs[k];
-            const Hypothesis& second = fitted_[b].hypothesis;
-            found[k] = fitted(joined(fitted_[a].hypothesis, fitted_[a].fit.parameters, second,
-                                     second.starts.empty() ? second.start() : second.starts.front()));
+            const Hypothesis both = from_many_starts(fitted_[a], fitted_[b].hypothesis);
+            found[k] = fitted(both);
+            found[k].hypothesis.starts = {found[k].fit.parameters};
         },
         progress_);
     std::erase_if(found, [&](const FittedHypothesis& pair) {
@@ -113,12 +130,24 @@ void StaticLoop::try_two() {
 }
 
 void StaticLoop::fit_pairs() {
-    if (best_single_ >= fitted_.size() || rest_.p > calibration_.unknown_p) {
+    constexpr std::size_t bends = 2;  // numbers of a law that can do what two effects of one number do together
+    constexpr double both = 0.1;      // chance before the data that it is two; many pairs are tried
+    const std::size_t numbers = best_single_ < fitted_.size() ? fitted_[best_single_].hypothesis.parameters.size() : 0;
+    const bool explained = rest_.p > calibration_.unknown_p;
+    if (best_single_ >= fitted_.size() || (explained && numbers < bends)) {
         return;
     }
-    const std::vector<FittedHypothesis> found = pairs_of_leaders();
+    std::vector<FittedHypothesis> found = pairs_of_leaders();
+    std::erase_if(
+        found, [&](const FittedHypothesis& pair) { return explained && pair.hypothesis.parameters.size() > numbers; });
     const std::size_t best = best_hypothesis(found, 2);
     if (best >= found.size()) {
+        return;
+    }
+    if (explained) {
+        found[best].rival = true;
+        found[best].hypothesis.prior *= both;
+        fitted_.push_back(std::move(found[best]));
         return;
     }
     const SmoothFit rest = structure_->best(found[best].fit.residuals);

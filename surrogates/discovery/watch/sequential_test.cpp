@@ -67,7 +67,8 @@ double SelfStartingLevel::normal(double value) {
     return bounded(normal_of_t((value - mean) / sigma * std::sqrt(before / (before + 1)), before - 1));
 }
 
-TwoSidedCusum::TwoSidedCusum(double mean_steps, bool upper_only) : upper_only_(upper_only) {
+TwoSidedCusum::TwoSidedCusum(double mean_steps, bool upper_only, double allowance)
+    : upper_only_(upper_only), allowance_(allowance) {
     for (std::size_t i = 0; i < references.size(); ++i) {
         thresholds_[i] = cusum_threshold(references[i], mean_steps);
     }
@@ -78,7 +79,7 @@ bool TwoSidedCusum::take(double u) {
     for (std::size_t i = 0; i < sides_.size(); ++i) {
         const double signed_u = i % 2 == 0 ? u : -u;
         Side& side = sides_[i];
-        side.sum = std::max(0.0, side.sum + signed_u - references[i / 2]);
+        side.sum = std::max(0.0, side.sum + signed_u - references[i / 2] - allowance_);
         side.since = side.sum > 0 ? side.since + 1 : 0;
         passed = passed || (side.sum > thresholds_[i / 2] && (i % 2 == 0 || !upper_only_));
     }

@@ -42,7 +42,8 @@ public:
     /// Tests in one of them.
     static constexpr std::size_t tests(bool upper_only) { return (upper_only ? 1 : 2) * references.size(); }
     /// `mean_steps`: to a false alarm of any one of the tests. `upper_only`: the lower side is never looked at.
-    TwoSidedCusum(double mean_steps, bool upper_only);
+    /// `allowance`: a mean of either sign up to which nothing has changed, in sigma.
+    TwoSidedCusum(double mean_steps, bool upper_only, double allowance = 0);
     /// Takes the number of one step; true when a test passed its threshold.
     bool take(double u);
     void reset();
@@ -60,6 +61,7 @@ private:
     std::array<Side, 2 * references.size()> sides_;
     std::array<double, references.size()> thresholds_{};
     bool upper_only_;
+    double allowance_;
 };
 
 }  // namespace underbody::discovery

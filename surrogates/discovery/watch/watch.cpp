@@ -22,6 +22,7 @@ constexpr std::size_t most_steps = 60000;     ///< kept
 constexpr std::size_t most_waiting = 100000;  ///< inputs and velocities whose reading of the gap has not come
 constexpr std::size_t most_plants = 64;
 constexpr std::size_t most_backwards = 20;  ///< readings in a row that run backwards: the clock began anew
+constexpr std::size_t set_back = 3;         ///< so many, then forwards again: the clock was set back a little
 constexpr double calm = 0.5;                ///< share of a threshold below which what was read may be learned from
 constexpr double longest_learned = 400;     ///< s, of what is learned from
 constexpr double input_memory = 300;        ///< s: how much the input may change at once is remembered
@@ -137,6 +138,9 @@ struct Watch::Parts {
                 return alarm;
             }
             begin_anew();
+        }
+        if (backwards >= set_back) {
+            begin_anew();  // how long these rows took is not known
         }
         backwards = 0;
         if (count_in_step > 0 && time - step_begin >= record_step * (1 - 1e-6)) {
@@ -269,7 +273,8 @@ struct Watch::Parts {
             std::max({least_block, least_steps * usual_step, blocks_of_colour * noise->correlation_time});
         // what was learned from also gives the scores their scale; sums that have begun go on where the blocks are
         // alike
-        auto fresh = std::make_unique<WatchScores>(block, usual_step, options.false_alarms_per_day);
+        auto fresh =
+            std::make_unique<WatchScores>(block, usual_step, options.false_alarms_per_day, options.fitted_over);
         const bool alike = scores && std::abs(block - scores->block()) < 0.2 * block;
         for (const WatchStep& step : recent) {
             const auto seen = residuals->take(step);

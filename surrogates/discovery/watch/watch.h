@@ -13,9 +13,11 @@
 namespace underbody::discovery {
 
 struct WatchOptions {
-    double false_alarms_per_day = 1;           ///< at most, while the vehicle is the model
-    double learn = 60;                         ///< s of readings from which noise and its colour are learned at first
-    double remember = 1200;                    ///< s that are kept for finding out what changed
+    double false_alarms_per_day = 1;  ///< at most, while the vehicle is the model
+    double learn = 60;                ///< s of readings from which noise and its colour are learned at first
+    double remember = 1200;           ///< s that are kept for finding out what changed
+    /// s of readings that numbers of the model were fitted to: they are that sure and no surer. 0: they are known.
+    double fitted_over = 0;
     std::map<std::string, double> noise;       ///< declared, SI: gap, heave_velocity; where the search begins
     std::map<std::string, double> conditions;  ///< SI, held
 };

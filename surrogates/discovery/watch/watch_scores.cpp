@@ -11,15 +11,19 @@ constexpr std::size_t most_blocks = 300;  ///< over which what shows is judged
 constexpr double alike = 6;  ///< of -2 log likelihood: directions that differ by less are not told apart (20 to 1)
 constexpr double least_filled = 0.5;     ///< share of a block's readings: with fewer it goes on
 constexpr double nothing_moved = 1e-30;  ///< information along a direction
+constexpr double fitted_sigmas = 3;      ///< by which a fitted number may be off
 
 }  // namespace
 
-WatchScores::WatchScores(double block, double usual_step, double false_alarms_per_day)
+WatchScores::WatchScores(double block, double usual_step, double false_alarms_per_day, double fitted_over)
     : block_(block), least_count_(least_filled * block / usual_step) {
     constexpr std::size_t tests = watch_directions * TwoSidedCusum::tests(false) + TwoSidedCusum::tests(true);
     const double blocks = 86400 / block / false_alarms_per_day * static_cast<double>(tests);
     for (std::size_t j = 0; j <= watch_directions; ++j) {
-        tests_.emplace_back(std::max(blocks, 2.0), j == watch_directions);
+        const bool scatter = j == watch_directions;
+        // a number fitted to n blocks is off by its sigma, and the mean of later ones with it by 1/sqrt(n) of theirs
+        const double allowance = fitted_over > 0 && !scatter ? fitted_sigmas * std::sqrt(block / fitted_over) : 0;
+        tests_.emplace_back(std::max(blocks, 2.0), scatter, allowance);
     }
 }
 

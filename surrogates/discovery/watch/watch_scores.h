@@ -14,7 +14,8 @@ namespace underbody::discovery {
 class WatchScores {
 public:
     /// `block`: s. `usual_step`: s between steps.
-    WatchScores(double block, double usual_step, double false_alarms_per_day);
+    /// `fitted_over`: WatchOptions::fitted_over.
+    WatchScores(double block, double usual_step, double false_alarms_per_day, double fitted_over);
     /// A test passed its threshold.
     struct Passed {
         bool scatter = false;  ///< more scatter than before, no direction

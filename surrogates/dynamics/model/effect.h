@@ -35,7 +35,8 @@ struct EffectParameter {
 struct EffectSearch {
     std::vector<std::string> needs{};         ///< channels that must vary in a static set
     std::vector<std::string> needs_one_of{};  ///< of these at least one
-    /// Numbers that fits of time series begin at, each of the length of the parameters; empty: 0.3 typical off neutral.
+    /// Numbers that fits begin at, each of the length of the parameters; of an effect that time series show, theirs
+    /// alone. Empty: a little off neutral.
     std::vector<std::vector<double>> starts{};
     std::vector<std::string> kin{};   ///< groups of effects that can stand in for parts of each other
     bool one_sign = false;            ///< of one kin and of opposite signs two of them are one law that neither has

@@ -82,7 +82,8 @@ int main(int argc, char** argv) {
         const std::string other = family == "jet" ? "pump_curve" : "current";
         cases("pair", {"force_bias", other}, "", 4);
         cases("pair", {"gap_offset", "drift"}, "", 4);
-        cases("rig scale and offset", {"gap_offset", "sensor_gain"}, "", 25);
+        cases("rig scale and offset", {"gap_offset", "sensor_gain"}, bench::scale_and_offset, 1);
+        cases("rig large scale and offset", {"gap_offset", "sensor_gain"}, "", 25);
         cases("noise single", {"gap_offset"}, "", 2);
         cases("noise single", {"sensor_gain"}, "", 2);
         cases("noise clean", {}, "", 0, 50);

@@ -320,12 +320,30 @@ std::vector<std::string> depends_of(const std::string& law, const std::string& f
                                 : std::vector<std::string>{"gap", "jet_voltage"};
 }
 
+/// A body is never below the ground, and no scale turns a force round.
+double least_of(const Law& law, const std::vector<Point>& points) {
+    if (law.name == "gap_offset") {
+        const auto nearest = std::min_element(points.begin(), points.end(),
+                                              [](const Point& a, const Point& b) { return a.gap < b.gap; });
+        return -0.8 * nearest->gap;
+    }
+    return law.name == "sensor_gain" ? -0.8 : -1e300;
+}
+
 std::vector<Law> laws_of(const Case& wanted) {
     core::Random random(wanted.seed * 6007 + 3);
     core::Random layout(wanted.seed * 13 + 1);
     const std::vector<Point> points = set_points(wanted.family, false, layout);
     const bool unknown = wanted.names == std::vector<std::string>{"unknown"};
     std::vector<Law> laws;
+    if (wanted.law == scale_and_offset) {  // as on rigs: a scale off by 4 to 12 %, a zero by 0.1 to 0.4 mm
+        const auto either_way = [&](double low, double high) {
+            return (random.uniform() < 0.5 ? -1 : 1) * random.uniform(low, high);
+        };
+        laws.push_back({"gap_offset", either_way(1e-4, 4e-4), random.uniform(), 0});
+        laws.push_back({"sensor_gain", either_way(0.04, 0.12), random.uniform(), 0});
+        return laws;
+    }
     for (const std::string& name : unknown ? std::vector<std::string>{wanted.law} : wanted.names) {
         Law law;
         law.name = name;
@@ -335,6 +353,7 @@ std::vector<Law> laws_of(const Case& wanted) {
         // to its level: RMS over the set points of the quantity it changes most, in noise
         for (int round = 0; round < 8; ++round) {
             law.a *= std::clamp(wanted.level / std::max(size_in_noise(wanted.family, {law}, points), 1e-9), 0.1, 10.0);
+            law.a = std::max(law.a, least_of(law, points));
         }
         laws.push_back(law);
     }

@@ -68,6 +68,9 @@ double static_noise(const std::string& family, const std::string& quantity);
 std::vector<std::string> effects_of(const std::string& family);
 std::vector<std::string> unknown_laws(const std::string& family);
 
+/// Case::law of a static set with a scale and an offset of usual sizes, whatever its level.
+inline constexpr const char* scale_and_offset = "usual sizes";
+
 // the declared physics, as this bench computes it
 double jet_lift(double gap);
 double glide_lift(double gap);

@@ -42,6 +42,24 @@ TEST(Attribution, RanksRivalsThatHaveNoProbabilityLeftByWhatTheyExplain) {
     EXPECT_EQ(found.chosen, 2U);
 }
 
+TEST(Attribution, ASecondEffectIsNotSoftenedByWhatTheFirstExplains) {
+    // as of a rig with a scale and an offset: what the offset explains beside the scale is small and sure
+    std::vector<FittedHypothesis> list{explanation("sensor_gain", 100000), explanation("current", 90000),
+                                       explanation("gap_offset", 100500)};
+    list.back().hypothesis.names = {"gap_offset", "sensor_gain"};
+    list.back().occam = 18;
+    Calibration calibration;
+    calibration.form_share = 0.003;
+    const Attribution found = attribute(list, 1e-9, {}, calibration);
+    EXPECT_EQ(named(list, found.shares.front()).hypothesis.label(), "gap_offset + sensor_gain");
+    EXPECT_GT(found.shares.front().probability, 0.7);
+    for (const Attribution::Share& share : found.shares) {
+        if (named(list, share).hypothesis.names == std::vector<std::string>{"sensor_gain"}) {
+            EXPECT_LT(share.probability, 1e-6);  // softened alike it came first
+        }
+    }
+}
+
 TEST(Attribution, CountsWhatNumbersFromOtherRunsLose) {
     // the same cost, but one of the two only with numbers that suit no other run
     const std::vector<FittedHypothesis> list{explanation("tether_stiffness", 200, 60),

@@ -199,6 +199,34 @@ TEST(HeavePitchExample, GetsItsTruth) {
     EXPECT_NEAR(arm.value, 0.008, std::max(4 * arm.sigma, 1e-4)) << found.sentence;
 }
 
+TEST_F(HeavePitchDiscovery, TheLinearFilterOfTheNoiseSearchAgreesWithTheFilter) {
+    PitchRig rig = short_rig();
+    rig.colour = 0.9;
+    const dynamics::Measurements data = test::pitch_rig_runs(rig, 1, 49);
+    core::Problems problems;
+    const std::vector<PitchRecord> records = pitch_records(model_, data, {0}, problems);
+    dynamics::PitchRun run(model_, data.runs[0], model_.records);
+    PitchNoise noise;
+    noise.white = {1e-4, 0, 3e-4, 0};
+    noise.force = 1e-3;
+    noise.moment = 1e-5;
+    const LinearPitchRun about = linear_pitch(run, records[0], noise);
+    std::vector<double> innovations;
+    EXPECT_NEAR(linear_cost(about, noise), about.cost, 0.3) << "at the noise of the path only its bends differ";
+    for (const double slow : {0.0, 1.5e-4}) {
+        for (const double force : {3e-4, 5e-3}) {
+            PitchNoise other = noise;
+            other.gap_slow = slow;
+            other.pitch_slow = 2 * slow;
+            other.force = force;
+            const double exact = filter_pitch(run, records[0], other, innovations);
+            const double scale = std::abs(exact - about.cost);
+            EXPECT_GT(scale, 20) << "the noise makes a difference";
+            EXPECT_NEAR(linear_cost(about, other), exact, 0.02 * scale + 0.5) << slow << " " << force;
+        }
+    }
+}
+
 TEST_F(HeavePitchDiscovery, LinearAnswersAreThoseOfTheFilter) {
     const dynamics::Measurements data = test::pitch_rig_runs(short_rig(), 1, 48);
     core::Problems problems;

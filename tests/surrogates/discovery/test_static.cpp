@@ -58,6 +58,19 @@ TEST(StaticDiscovery, NamesABiasAGapOffsetAndADeadZoneWithTheirSizes) {
     EXPECT_EQ(pump.effects.at(0).name, "pump_curve");
 }
 
+TEST(StaticDiscovery, NamesALargeOffsetBesideAScaleThatHidesItsSlope) {
+    // a zero off by 12 mm where the table bends over 30 mm: from half a millimetre the way leads over hills
+    for (const double offset : {0.012, 0.03}) {
+        const Discovery found = found_on([&](double h, double v) { return 1.3 * declared(h + offset, v); }, 6);
+        ASSERT_EQ(found.verdict, "effect") << found.sentence;
+        ASSERT_EQ(found.effects.size(), 2U) << found.sentence;
+        for (const FoundEffect& effect : found.effects) {
+            const FoundParameter& number = effect.parameters.at(0);
+            EXPECT_NEAR(number.value, effect.name == "gap_offset" ? offset : 1.3, 4 * number.sigma) << found.sentence;
+        }
+    }
+}
+
 TEST(StaticDiscovery, CallsWhatTheCatalogueLacksUnknownAndSaysOnWhatItDepends) {
     const Discovery found = found_on(
         [](double h, double v) { return declared(h, v) + 0.006 * std::exp(-std::pow(std::log(h / 0.03), 2) / 0.15); },

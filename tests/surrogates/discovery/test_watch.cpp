@@ -34,6 +34,23 @@ TEST(SequentialTest, TheThresholdGivesTheStatedMeanTime) {
     }
 }
 
+TEST(SequentialTest, AMeanWithinTheAllowanceIsNoChangeAndALargerOneIs) {
+    constexpr double allowance = 0.4;
+    const auto steps_to_alarm = [](double mean, double allowed) {
+        core::Random random(3);
+        TwoSidedCusum test(1e8, false, allowed);
+        int steps = 0;
+        while (steps < 200000 && !test.take(random.normal(mean, 1))) {
+            ++steps;
+        }
+        return steps;
+    };
+    EXPECT_EQ(steps_to_alarm(allowance, allowance), 200000);
+    EXPECT_EQ(steps_to_alarm(-allowance, allowance), 200000);
+    EXPECT_LT(steps_to_alarm(allowance, 0), 500);
+    EXPECT_LT(steps_to_alarm(1.2, allowance), 100);
+}
+
 TEST(SequentialTest, SelfStartingNumbersAreStandardNormalWhateverTheScale) {
     core::Random random(2);
     double sum = 0, squares = 0, tails = 0, neighbours = 0, count = 0;
@@ -204,6 +221,21 @@ TEST(Watch, AClockThatBeginsAnewIsNoChange) {
     }
     EXPECT_GT(passed_by, 1050);
     EXPECT_EQ(watch.passed_over(), 20u);
+}
+
+/// How long the rows took that are passed over nobody knows: the body went on meanwhile.
+TEST(Watch, AClockThatIsSetOnAndBackALittleIsNoChange) {
+    for (const double jump : {0.3, 0.9, 5.0}) {
+        WatchedRig rig(12);
+        Watch watch(WatchedRig::model(), {});
+        while (rig.time < 2400) {
+            rig.advance();
+            const double time = rig.time + (std::fmod(rig.time, 400) > 200 ? jump : 0);
+            EXPECT_FALSE(watch.gap(time, rig.reading)) << rig.time << " " << jump;
+            watch.input(time, rig.input);
+        }
+        EXPECT_GT(watch.judged(), 2200);
+    }
 }
 
 TEST(Watch, ReadingsSinceTheChangeAreRuns) {
