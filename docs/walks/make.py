@@ -49,7 +49,7 @@ WINDOW = [
      "stability"),
 ]
 SIZE = ["--width", "1280", "--height", "800"]
-MOST_LINES = {"discover": 4}  # of what is printed; others 20
+MOST_LINES = {"discover": 4, "linear": 23}  # of what is printed; others 20
 
 
 def run(words, folder):
