@@ -8,6 +8,7 @@
 #include "core/own_files.h"
 #include "core/text.h"
 #include "core/toml.h"
+#include "postproc/importers/importer.h"
 
 namespace underbody::cases {
 
@@ -71,6 +72,15 @@ std::string case_text(const std::filesystem::path& folder, const NewCases& cases
     return text + design_points_of(folder, cases);
 }
 
+/// Files, and folders that are cases, that fit but for a number.
+std::vector<std::filesystem::path> near_misses(const core::NamePattern& pattern, const std::filesystem::path& folder) {
+    auto missed = pattern.near_misses(folder, true);
+    std::erase_if(missed, [](const std::filesystem::path& path) {
+        return std::filesystem::is_directory(path) && postproc::importer_for(path) == nullptr;
+    });
+    return missed;
+}
+
 /// What is wrong stands in the lines to be added, which nobody has seen yet: says it without their place.
 void say_of_new_lines(const core::InputError& error, const std::filesystem::path& folder, const NewCases& cases,
                       const std::filesystem::path& file, std::ptrdiff_t old_lines) {
@@ -80,7 +90,7 @@ void say_of_new_lines(const core::InputError& error, const std::filesystem::path
     std::string hint = error.hint();
     if (error.kind() == "missing") {
         const core::NamePattern pattern(cases.files);
-        if (const auto missed = pattern.near_misses(folder); !missed.empty()) {
+        if (const auto missed = near_misses(pattern, folder); !missed.empty()) {
             hint = std::to_string(missed.size()) + " come near, such as " + missed.front().string() + ": " +
                    pattern.why_not(missed.front(), folder);
         }
@@ -96,7 +106,7 @@ std::vector<std::pair<std::filesystem::path, std::string>> left_out(const std::f
                                                                     const std::string& files) {
     const core::NamePattern pattern(files);
     std::vector<std::pair<std::filesystem::path, std::string>> list;
-    for (const auto& missed : pattern.near_misses(folder)) {
+    for (const auto& missed : near_misses(pattern, folder)) {
         list.emplace_back(missed, pattern.why_not(missed, folder));
     }
     return list;

@@ -533,6 +533,10 @@ TEST_F(PostprocCommands, PatternsTakeFoldersThatAreCases) {
     const auto missed = run({"loads", "runs/gap{gap:mm}", "--zones", "*Wall*"});
     EXPECT_EQ(missed.exit_code, 0);
     EXPECT_THAT(missed.output + missed.errors, testing::HasSubstr("gap1O ('1O' is no number"));
+    const auto added = run({"study", "add", "campaign", "--files", "../runs/gap{gap:mm}"});
+    EXPECT_EQ(added.exit_code, 0) << added.errors;
+    EXPECT_THAT(added.output, testing::AllOf(testing::HasSubstr("2 cases added"), testing::HasSubstr("gap1O"),
+                                             testing::Not(testing::HasSubstr("notes"))));
 }
 
 TEST_F(PostprocCommands, ImportLosesNoFile) {
