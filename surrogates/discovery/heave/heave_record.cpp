@@ -260,7 +260,7 @@ std::string keep_inside_tables(HeaveRecord& record, double noise) {
                        values->begin() + static_cast<std::ptrdiff_t>(inside.last)};
         }
     }
-    return dynamics::outside_text(record.name, inside, tables_of(*record.plant), record.time);
+    return dynamics::unused_text(record.name, inside, tables_of(*record.plant), record.time);
 }
 
 /// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.

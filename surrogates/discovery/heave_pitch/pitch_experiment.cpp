@@ -344,7 +344,12 @@ std::vector<PitchRecord> pitch_records(const dynamics::Model& model, const dynam
         PitchRecord record;
         record.run = r;
         record.name = run.name;
-        record.value = dynamics::PitchRun(model, run, model.records).readings().value;
+        dynamics::PitchRun measured(model, run, model.records);
+        const core::Place place{run.file.string(), {}, {}, {}};
+        for (const std::string& text : measured.clean_readings(run.name, dynamics::lift_gap_range(model))) {
+            problems.push_back({core::Problem::Severity::warning, text, place});
+        }
+        record.value = measured.readings().value;
         const std::array<double, pitch_states> noise = dynamics::pitch_noise(data, run);
         const std::size_t rows = run.table.rows();
         std::size_t end = 0;
@@ -354,7 +359,6 @@ std::vector<PitchRecord> pitch_records(const dynamics::Model& model, const dynam
                 break;
             }
         }
-        const core::Place place{run.file.string(), {}, {}, {}};
         if (end < least_rows) {
             problems.push_back({core::Problem::Severity::warning,
                                 "run " + run.name + " has only " + std::to_string(end) +

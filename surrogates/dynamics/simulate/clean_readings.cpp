@@ -111,8 +111,8 @@ std::string range_text(const GapRange& tables) {
     return "(" + core::format_number(tables.lower, 4) + " to " + core::format_number(tables.upper, 4) + " m)";
 }
 
-std::string outliers_text(const std::string& run, std::size_t count) {
-    return std::to_string(count) + " gap readings of " + run + " lie far from their neighbours: not used";
+std::string outliers_text(const std::string& run, std::size_t count, const std::string& channel) {
+    return std::to_string(count) + " " + channel + " readings of " + run + " lie far from their neighbours: not used";
 }
 
 std::string saturated_text(const std::string& run, std::size_t count) {
@@ -120,15 +120,19 @@ std::string saturated_text(const std::string& run, std::size_t count) {
            " stand exactly at the end of the sensor's range (saturated): not used";
 }
 
-std::string outside_text(const std::string& run, const InsideTables& inside, const GapRange& tables,
-                         std::span<const double> time) {
+std::string outside_text(const std::string& run, const InsideTables& inside, const GapRange& tables) {
+    return run + " spends " + core::format_number(100 * inside.outside, 3) +
+           " % of its time outside the tables of the declared model " + range_text(tables) +
+           ", where nothing is known of the force";
+}
+
+std::string unused_text(const std::string& run, const InsideTables& inside, const GapRange& tables,
+                        std::span<const double> time) {
     const std::string used = time.empty()
                                  ? "nothing of it is"
                                  : "only " + core::format_number(time.front(), 4) + " to " +
                                        core::format_number(time.back(), 4) + " s, the longest stretch inside, are";
-    return run + " spends " + core::format_number(100 * inside.outside, 3) +
-           " % of its time outside the tables of the declared model " + range_text(tables) +
-           ", where nothing is known of the force: " + used + " used";
+    return outside_text(run, inside, tables) + ": " + used + " used";
 }
 
 }  // namespace underbody::dynamics

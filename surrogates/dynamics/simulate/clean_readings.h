@@ -31,9 +31,10 @@ InsideTables longest_inside(std::span<const double> gap, const GapRange& tables,
 std::string range_text(const GapRange& tables);
 
 /// What is said of readings that are not used; `time` (s) holds those of the stretch that is.
-std::string outliers_text(const std::string& run, std::size_t count);
+std::string outliers_text(const std::string& run, std::size_t count, const std::string& channel = "gap");
 std::string saturated_text(const std::string& run, std::size_t count);
-std::string outside_text(const std::string& run, const InsideTables& inside, const GapRange& tables,
-                         std::span<const double> time);
+std::string outside_text(const std::string& run, const InsideTables& inside, const GapRange& tables);
+std::string unused_text(const std::string& run, const InsideTables& inside, const GapRange& tables,
+                        std::span<const double> time);
 
 }  // namespace underbody::dynamics

@@ -26,6 +26,7 @@ std::vector<PitchRunPrediction> predict_pitch_runs(const Model& model, const Mea
         [&](std::size_t r) {
             all[r].run = std::make_unique<PitchRun>(model, data.runs[r], model.records);
             all[r].run->set_noise(pitch_noise(data, data.runs[r]));
+            all[r].not_used = all[r].run->clean_readings(data.runs[r].name, lift_gap_range(model));
             all[r].windows = predict_windows(*all[r].run, options.horizon, past);
         },
         progress);
@@ -54,6 +55,9 @@ void check_motion(const std::vector<PitchRunPrediction>& all, const Model& model
                 away = away || std::abs(y[0]) > far_gap || std::abs(y[2]) > far_pitch;
             }
             out.diverged += away ? 1 : 0;
+        }
+        for (const std::string& text : all[r].not_used) {
+            out.remarks.push_back({core::Problem::Severity::warning, text, {data.runs[r].table.source, {}, {}, {}}});
         }
         if (all[r].windows.empty()) {
             out.remarks.push_back(

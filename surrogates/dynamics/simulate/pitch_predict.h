@@ -13,6 +13,7 @@ std::array<double, pitch_states> pitch_noise(const Measurements& data, const Mea
 struct PitchRunPrediction {
     std::unique_ptr<PitchRun> run;
     std::vector<PitchWindow> windows;
+    std::vector<std::string> not_used;  ///< what is said of readings that it is not judged by
 };
 /// All runs of the data with the model's [records]; states from min(horizon, 2 s) of readings, or options.past.
 std::vector<PitchRunPrediction> predict_pitch_runs(const Model& model, const Measurements& data,

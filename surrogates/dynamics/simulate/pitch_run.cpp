@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
@@ -31,8 +32,12 @@ bool pitch_moves(const MeasuredRun& run) {
     if (column == nullptr || column->is_text()) {
         return false;
     }
+    const std::vector<double>& time = run.table.numbers("time");
+    std::vector<double> values = column->numbers;
+    const double noise = sensor_noise(time, values);
+    drop_outliers(values, std::max(noise, 1e-9));
     double sum = 0, square = 0, count = 0;
-    for (const double value : column->numbers) {
+    for (const double value : values) {
         if (std::isfinite(value)) {
             sum += value;
             square += value * value;
@@ -43,7 +48,7 @@ bool pitch_moves(const MeasuredRun& run) {
         return false;
     }
     const double spread = std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
-    return spread > 1e-9 && spread > moves_by * sensor_noise(run.table.numbers("time"), column->numbers);
+    return spread > 1e-9 && spread > moves_by * noise;
 }
 
 /// A missing value is that before it.
@@ -97,6 +102,29 @@ PitchRun::PitchRun(const Model& model, const MeasuredRun& run, const RecordReadi
             readings_.value[i] = as_read(run, channel_name(pitch_channels[i]), records);
         }
     }
+}
+
+std::vector<std::string> PitchRun::clean_readings(const std::string& name, const GapRange& tables) {
+    std::vector<std::string> said;
+    for (std::size_t i = 0; i < pitch_states; ++i) {
+        std::vector<double>& values = readings_.value[i];
+        if (values.empty()) {
+            continue;
+        }
+        const bool gap = pitch_channels[i] == Channel::gap;
+        if (const std::size_t saturated = gap ? drop_saturated(time(), values) : 0; saturated > 0) {
+            said.push_back(saturated_text(name, saturated));
+        }
+        const double own = sensor_noise(time(), values);
+        if (const std::size_t outliers = drop_outliers(values, std::max(own, 1e-9)); outliers > 0) {
+            said.push_back(outliers_text(name, outliers, channel_name(pitch_channels[i])));
+        }
+        const InsideTables inside = gap ? longest_inside(values, tables, own) : InsideTables{};
+        if (inside.outside > 0) {
+            said.push_back(outside_text(name, inside, tables) + "; the tables' end values are taken for it");
+        }
+    }
+    return said;
 }
 
 void PitchRun::rate(std::size_t k, double t, const PitchState& y, ContactState bearing, PitchState& dydt, double force,

@@ -4,9 +4,11 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 
 namespace underbody::dynamics {
@@ -49,6 +51,9 @@ public:
     /// Readings of the run, velocities with the factor of the records.
     [[nodiscard]] const PitchReadings& readings() const { return readings_; }
     void set_noise(const std::array<double, pitch_states>& noise) { readings_.noise = noise; }
+    /// Readings that a model is not judged by become missing: outliers, and gaps at the end of the sensor's range. What
+    /// is said of it, and of gaps outside the tables of the model.
+    std::vector<std::string> clean_readings(const std::string& name, const GapRange& tables);
 
 private:
     InputSignals signals_;

@@ -437,7 +437,7 @@ void remark_unused(const SeriesPrediction& all, const Model& model, const Measur
         }
         if (inside.outside > 0 && !all.outside_too) {
             const std::span<const double> time(predictor.time());
-            say(outside_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
+            say(unused_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
         } else if (all.rows[r].empty()) {
             say("run " + run + " is shorter than the time a prediction needs and was left out");
         }

@@ -1,6 +1,7 @@
 // Runs of heave with pitch: residual force and moment, effects in either, clean sets, and predictions as reported.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -121,6 +122,60 @@ TEST_F(HeavePitchDiscovery, ReportsTheErrorThatPredictFindsOnTheHeldOutRuns) {
     }
     for (const dynamics::ChannelError& channel : before.channels) {
         EXPECT_NEAR(channel.rmse, error_of(found, channel.name).before.rmse, 1e-9 * channel.rmse);
+    }
+}
+
+/// Every so many readings of gap and pitch far off, a gap far below the ground among them.
+void spoil(dynamics::Measurements& data) {
+    for (dynamics::MeasuredRun& run : data.runs) {
+        core::Table spoilt;
+        for (const core::Column& column : run.table.columns()) {
+            std::vector<double> values = column.numbers;
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                values[i] += column.name == "gap" && i % 97 == 40     ? (i % 2 == 0 ? 0.5 : -0.5)
+                             : column.name == "pitch" && i % 89 == 11 ? 0.4
+                                                                      : 0.0;
+            }
+            spoilt.add_numbers(column.name, column.unit, values);
+        }
+        spoilt.source = run.table.source;
+        run.table = spoilt;
+    }
+}
+
+TEST_F(HeavePitchDiscovery, WildReadingsAreNoEffectNoTouchAndNoError) {
+    PitchRig rig = short_rig();
+    rig.moment = [](const PitchMoment& now) { return 0.015 * std::cos(now.pitch) * now.input; };
+    dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 43), fresh = test::pitch_rig_runs(rig, 3, 1043);
+    data.motion = "";  // seen from the pitch, which moves by more than its noise without its wild readings too
+    const std::vector<PitchRecord> whole = [&] {
+        core::Problems problems;
+        return pitch_records(model_, data, {0, 1, 2, 3, 4}, problems);
+    }();
+    spoil(data);
+    core::Problems problems;
+    const std::vector<PitchRecord> records = pitch_records(model_, data, {0, 1, 2, 3, 4}, problems);
+    ASSERT_EQ(records.size(), whole.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        EXPECT_EQ(records[i].last, whole[i].last) << records[i].name;
+    }
+    const Discovery found = discover(model_, data, quick());
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "input_arm") << found.sentence;
+    EXPECT_LT(error_of(found, "pitch").after.rmse, 1.3 * rig.pitch_noise);
+    spoil(fresh);
+    const dynamics::Prediction after = dynamics::predict(found.model, fresh);
+    for (const dynamics::ChannelError& channel : after.channels) {
+        EXPECT_LT(channel.in_noise, 1.5) << channel.name;
+    }
+    const auto says = [](const core::Problems& among, const std::string& text) {
+        return std::any_of(among.begin(), among.end(),
+                           [&](const core::Problem& one) { return one.message.find(text) != std::string::npos; });
+    };
+    for (const core::Problems& among : {after.remarks, found.problems}) {
+        EXPECT_TRUE(says(among, "gap readings of ")) << found.sentence;
+        EXPECT_TRUE(says(among, "pitch readings of ")) << found.sentence;
     }
 }
 
