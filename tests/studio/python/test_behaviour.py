@@ -50,6 +50,23 @@ def test_errors_say_where(program, tmp_path):
     assert (raised.value.line, raised.value.column, str(raised.value)) == (error.line, error.column, str(error))
 
 
+@pytest.mark.parametrize("wrong, says", [
+    ('channel.gap = { field = "hight", unit = "mm" }', "did you mean 'height'?"),
+    ('channel.gap = { feild = "height", unit = "mm" }', "did you mean 'field'?"),
+    ('channel.gap = { field = "height", unit = "s" }', "gap"),
+    ('channel.gab = { field = "height", unit = "mm" }', "did you mean 'gap'?"),
+])
+def test_mapping_files_have_the_same_words_and_place(program, tmp_path, wrong, says):
+    (tmp_path / "run.csv").write_text("stamp,height\n" + "".join(f"{k / 10},{20 + k % 3}\n" for k in range(50)))
+    mapping = tmp_path / "dataset.toml"
+    mapping.write_text(f'kind = "time_series"\n\n[log]\nclock = "stamp"\n{wrong}\n\n[[run]]\nfile = "run.csv"\n')
+    with pytest.raises(underbody.InputError) as raised:
+        underbody.predict("heave/model.toml", data=tmp_path)
+    assert str(raised.value) == program.sentence("predict", "heave/model.toml", "--data", tmp_path)
+    assert says in str(raised.value)
+    assert (raised.value.file, raised.value.line) == (str(mapping), 5)
+
+
 def test_reading_raises_too(tmp_path):
     path = tmp_path / "no-cfd.bin"
     path.write_bytes(b"\0\1\2\3" * 100)
