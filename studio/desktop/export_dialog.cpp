@@ -26,11 +26,12 @@ namespace underbody::studio {
 
 namespace fs = std::filesystem;
 
-ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent)
-    : QDialog(parent), jobs_(jobs), all_(std::move(all)) {
+ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
+                           std::string file)
+    : QDialog(parent), jobs_(jobs), all_(std::move(all)), file_(std::move(file)) {
     setObjectName("export");
     setAttribute(Qt::WA_DeleteOnClose);
-    setWindowTitle("Export " + qt(all_.front()->quantity()) + " for a controller");
+    setWindowTitle("Export " + qt(all_.front()->quantity()).replace('_', ' ') + " for a controller");
     resize(1000, 640);
     soon_ = new QTimer(this);
     soon_->setSingleShot(true);
@@ -196,7 +197,7 @@ void ExportDialog::refresh() {
 QString ExportDialog::command(const QString& path) const {
     Words words = {"underbody",
                    "export",
-                   all_.front()->source().empty() ? "TABLE.csv" : all_.front()->source(),
+                   file_.empty() ? "TABLE.csv" : file_,
                    "--quantity",
                    all_.front()->quantity(),
                    "--format",

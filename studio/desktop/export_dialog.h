@@ -23,7 +23,9 @@ namespace underbody::studio {
 class ExportDialog : public QDialog {
     Q_OBJECT
 public:
-    ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent);
+    /// `file`: where the table's points stand as a CSV file, for the command that does the same.
+    ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
+                 std::string file = {});
     /// The command that writes the same.
     [[nodiscard]] QString command(const QString& path) const;
     /// Writes; throws core::Error.
@@ -51,6 +53,7 @@ private:
 
     Jobs& jobs_;
     std::vector<std::shared_ptr<const tables::ForceTable>> all_;
+    std::string file_;
     QComboBox* format_ = nullptr;
     QLineEdit* name_ = nullptr;
     QComboBox* frame_ = nullptr;

@@ -54,6 +54,17 @@ fs::path log_folder(bool remember) {
                : fs::path();
 }
 
+/// Something that another step of the study makes.
+bool is_missing(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const core::InputError& known) {
+        return known.kind() == "missing";
+    } catch (...) {
+        return false;
+    }
+}
+
 }  // namespace
 
 MainWindow::MainWindow(bool remember)
@@ -79,7 +90,11 @@ MainWindow::MainWindow(bool remember)
     build_view_menu();
     build_help_menu();
     build_tool_bar();
-    connect(jobs_, &Jobs::failed, this, &MainWindow::show_failure);
+    connect(jobs_, &Jobs::failed, this, [this](const QString& what, const std::exception_ptr& error) {
+        if (what == "computing" || !desk_->computing() || !is_missing(error)) {  // what is on its way is not missing
+            show_failure(what, error);
+        }
+    });
     connect(jobs_, &Jobs::succeeded, banner_, &QWidget::hide);
     connect(desk_, &Desk::refused, this, &MainWindow::show_failure);
     connect(desk_, &Desk::acted, banner_, &QWidget::hide);

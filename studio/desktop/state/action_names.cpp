@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "studio/desktop/state/actions.h"
+#include "studio/desktop/state/exports.h"
 #include "studio/desktop/state/measured.h"
 
 namespace underbody::studio {
@@ -70,7 +71,7 @@ std::string export_command(const State& state, const Words& words) {
         return {};
     }
     const ExportRecord& record = at->second;
-    Words line = {"underbody", "export",      state.study + "/report/exports/" + record.table + ".csv",
+    Words line = {"underbody", "export",      table_file(state, record.table),
                   "--format",  record.format, "--out",
                   words[1],    "--name",      record.name};
     if (record.frame != "up") {

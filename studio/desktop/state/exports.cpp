@@ -61,6 +61,10 @@ void export_again(const Session& session, const std::string& file, const ExportR
                          record.format, file, options, progress);
 }
 
+std::string table_file(const State& state, const std::string& table) {
+    return state.study.empty() ? std::string() : state.study + "/report/exports/" + table + ".csv";
+}
+
 Words words_of_export(const std::string& file, const ExportRecord& record) {
     Words words = {"exported",
                    file,

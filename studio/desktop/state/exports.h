@@ -26,6 +26,9 @@ std::vector<std::string> stale_exports(const State& state, const Session& sessio
 void export_again(const Session& session, const std::string& file, const ExportRecord& record,
                   core::Progress& progress);
 
+/// The points of a table of the study as `study run` writes them; empty without a study.
+std::string table_file(const State& state, const std::string& table);
+
 /// `exported FILE TABLE KEY=VALUE ...`, as the action takes it.
 Words words_of_export(const std::string& file, const ExportRecord& record);
 

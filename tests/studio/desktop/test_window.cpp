@@ -21,6 +21,7 @@
 #include <QTableWidget>
 #include <QTest>
 #include <cmath>
+#include <future>
 #include <random>
 #include <thread>
 
@@ -35,6 +36,7 @@
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/screenshots.h"
+#include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/fit/force_table.h"
@@ -240,6 +242,31 @@ TEST_F(Window, ReloadingWhileItComputesDisturbsNothing) {
     EXPECT_EQ(window_->desk().session().results.loads.rows(), 5U);
 }
 
+// What another step makes is not missing while the study is computed: it is looked at again at the end.
+TEST_F(Window, WhatIsOnItsWayIsNotMissing) {
+    open(computed_study());
+    const auto look = [&] {
+        window_->jobs().start("table", "fitting", [](core::Progress&) -> std::function<void()> {
+            throw core::InputError("missing", "the mesh uncertainty '5 mm' was not found");
+        });
+    };
+    std::promise<void> end;
+    window_->jobs().start("run", "computing", [done = end.get_future().share()](core::Progress&) {
+        done.wait();
+        return [] {};
+    });
+    look();
+    while (window_->jobs().busy("table")) {
+        QTest::qWait(5);
+    }
+    EXPECT_EQ(window_->last_error(), "");
+    end.set_value();
+    settle(*window_);
+    look();
+    settle(*window_);
+    EXPECT_TRUE(window_->last_error().contains("was not found"));
+}
+
 TEST_F(Window, WhatACancelledRunHasStoredIsShown) {
     const fs::path study = folder_.path() / "fresh";
     test::make_few_gaps(study);
@@ -324,8 +351,12 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     open(computed_study());
     act("workspace tables");
     settle(*window_);
-    ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get());
+    ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+                                            table_file(window_->desk().state(), "lift"));
     settle(*window_);
+    EXPECT_TRUE(dialog->command("lift.h").startsWith(
+        "underbody export " + QString::fromStdString(computed_study().string()) + "/report/exports/lift.csv "))
+        << dialog->command("lift.h").toStdString();
     EXPECT_TRUE(dialog->preview().contains("#ifndef")) << dialog->preview().left(300).toStdString();
     dialog->prove();
     settle(*window_);
