@@ -94,7 +94,7 @@ def loads_with_errors(evie):
     """A table of loads by the command, and in each row the error that the study takes from its mesh study."""
     program, _, results = evie
     program.json("loads", "fields/{variant}-h{gap:mm}-p{pitch:deg}.csv", "--symmetry", "y", "--out", "loads.csv")
-    head, *rows = (program.folder / "loads.csv").read_text().splitlines()
+    head, *rows = [line for line in (program.folder / "loads.csv").read_text().splitlines() if not line.startswith("#")]
     sigma = results["mesh/5 mm"]["quantities"]["lift_force"]["standard_uncertainty"]
     (program.folder / "with-errors.csv").write_text(
         "\n".join([f"{head}, lift_force_sigma [N]", *(f"{row}, {sigma!r}" for row in rows)]) + "\n")
