@@ -113,7 +113,7 @@ public:
     }
 
     /// The log has ended, or somebody ended the watch. True if there was an alarm.
-    bool end(bool cancelled) {
+    bool end(bool cancelled, const core::Problems& problems) {
         if (!cancelled) {
             if (alarm_) {
                 look_for_cause();
@@ -136,13 +136,22 @@ public:
         if (passed_over_ > 0) {
             text += "; " + std::to_string(passed_over_) + " readings whose time did not ascend were passed over";
         }
+        nlohmann::json warnings = nlohmann::json::array();
+        for (const core::Problem& problem : problems) {
+            warnings.push_back(problem.place.text() + ": " + problem.message);
+        }
+        if (!problems.empty()) {
+            text += "; " + std::to_string(problems.size()) + (problems.size() == 1 ? " warning" : " warnings") +
+                    " about the log";
+        }
         say({{"event", "end"},
              {"time", last_},
              {"readings", readings_},
              {"judged", watched_},
              {"passed_over", passed_over_},
              {"alarms", alarms_},
-             {"cancelled", cancelled}},
+             {"cancelled", cancelled},
+             {"warnings", warnings}},
             text);
         if (shell_.caller() != nullptr) {
             shell_.print_json({{"events", events_}, {"alarms", alarms_}});
@@ -251,6 +260,7 @@ private:
         const dynamics::RecordReading records = model_.records;
         model_ = found.model;
         model_.records = records;
+        options_.fitted_over = std::max(last_ - alarmed_since_, after_);
         begin();
     }
 
@@ -359,9 +369,10 @@ int run_watch(const WatchArguments& arguments, Shell& shell) {
     try {
         watch_log(arguments, watching, shell, problems);
         shell.show(problems);
-        return watching.end(false) ? ExitCode::check_failed : ExitCode::done;
+        return watching.end(false, problems) ? ExitCode::check_failed : ExitCode::done;
     } catch (const core::Cancelled&) {
-        watching.end(true);
+        shell.show(problems);
+        watching.end(true, problems);
         return ExitCode::cancelled;
     }
 }

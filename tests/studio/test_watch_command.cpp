@@ -71,6 +71,20 @@ TEST(WatchCommand, IsSilentWhileNothingChanges) {
     EXPECT_THAT(run.output, HasSubstr("the vehicle was the model all the time"));
 }
 
+TEST(WatchCommand, GoesOnBehindBrokenLinesAndSaysThem) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    std::string csv = changed_rig(120);
+    const std::size_t middle = csv.find('\n', csv.size() / 2) + 1;
+    csv.insert(middle, "60.0, 10\n60.001, nan, 0\n");
+    core::write_file(folder.path() / "run.csv", csv);
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv"}, folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    EXPECT_THAT(run.errors, HasSubstr("passed over: this line has 2 fields, the header 3"));
+    EXPECT_THAT(run.errors, HasSubstr("no reading"));
+    EXPECT_THAT(run.output, HasSubstr("the vehicle was the model all the time; 2 warnings about the log"));
+}
+
 TEST(WatchCommand, ReadsHeadingsByADatasetAndNamesBadLines) {
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "model.toml", rig_model);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <thread>
 
@@ -31,13 +32,55 @@ bool has_rows(std::string_view text) {
     return std::any_of(lines.begin(), lines.end(), is_row);
 }
 
+/// The line with its fields that are infinite or no number at all ("nan") left empty.
+std::string without_non_finite(const std::string& line) {
+    std::string out;
+    for (const std::string_view cell : core::split(line, ',')) {
+        const auto value = core::parse_number(core::trimmed(cell));
+        out += value && !std::isfinite(*value) ? "," : std::string(cell) + ",";
+    }
+    out.pop_back();
+    return line.ends_with('\n') && !out.ends_with('\n') ? out + "\n" : out;
+}
+
 /// Lines of a CSV file as they come.
 class CsvStream {
 public:
-    CsvStream(const std::string& name, const std::function<std::unique_ptr<ChannelSink>(const core::Table&)>& sink_of)
-        : name_(name), sink_of_(sink_of) {}
+    CsvStream(const std::string& name, const std::function<std::unique_ptr<ChannelSink>(const core::Table&)>& sink_of,
+              core::Problems& problems)
+        : name_(name), sink_of_(sink_of), problems_(problems) {}
 
     void take(std::string rows) {
+        take_header(rows);
+        try {
+            take_rows(rows);
+        } catch (const core::InputError&) {
+            for (std::size_t begin = 0; begin < rows.size();) {
+                const std::size_t end = std::min(rows.find('\n', begin), rows.size() - 1) + 1;
+                take_line(rows.substr(begin, end - begin));
+                begin = end;
+            }
+        }
+    }
+    /// A line that is refused is an error.
+    void take_whole(std::string rows) {
+        take_header(rows);
+        take_rows(rows);
+    }
+    [[nodiscard]] bool any() const { return sink_ != nullptr; }
+    [[nodiscard]] std::int64_t next_line() const { return lines_ + 1; }
+    /// What was passed over in all.
+    void sum_up() const {
+        if (bad_ + empty_ > said_) {
+            problems_.push_back({core::Problem::Severity::warning,
+                                 "in all " + std::to_string(bad_) + " lines were passed over, and numbers of " +
+                                     std::to_string(empty_) + " lines were not finite",
+                                 core::Place{name_, {}, {}, {}}});
+        }
+    }
+
+private:
+    void take_header(std::string& rows) {
         while (header_.empty() && !rows.empty()) {
             const std::size_t end = std::min(rows.find('\n'), rows.size() - 1) + 1;
             const std::string line = rows.substr(0, end);
@@ -48,23 +91,53 @@ public:
                 header_line_ = lines_;
             }
         }
+    }
+
+    void take_rows(const std::string& rows) {
         if (!header_.empty() && has_rows(rows)) {
-            send(rows);
+            good_ += send(rows);
+            bad_in_a_row_ = 0;
         }
         lines_ += std::count(rows.begin(), rows.end(), '\n');
     }
-    [[nodiscard]] bool any() const { return sink_ != nullptr; }
-    [[nodiscard]] std::int64_t next_line() const { return lines_ + 1; }
 
-private:
-    void send(const std::string& rows) {
+    /// A log that was read well for a while is not given up for a line: its writer was interrupted, or a sensor failed.
+    void take_line(const std::string& line) {
+        constexpr std::size_t well = 20, most_in_a_row = 100;
+        const std::string finite = without_non_finite(line);
+        const std::int64_t before = lines_;
+        try {
+            take_rows(finite);
+            if (finite != line && is_row(line) && ++empty_ == 1) {
+                say(before + 1, "a number that is not finite is taken as no reading, here and from here on");
+            }
+        } catch (const core::InputError& error) {
+            if (good_ < well || ++bad_in_a_row_ > most_in_a_row) {
+                throw;
+            }
+            if (++bad_ <= most_said) {
+                say(before + 1, "the line is passed over: " + error.message());
+            }
+            ++lines_;
+        }
+    }
+
+    void say(std::int64_t line, const std::string& text) {
+        ++said_;
+        problems_.push_back({core::Problem::Severity::warning, text, core::Place{name_, line, {}, {}}});
+    }
+
+    std::size_t send(const std::string& rows) {
         try {
             const core::Table table = core::read_csv(header_ + rows, name_);
             const bool first = sink_ == nullptr;
+            std::unique_ptr<ChannelSink> made = first ? sink_of_(table) : nullptr;
+            ChannelSink& sink = first ? *made : *sink_;
+            send_csv(table, sink.channels(), first, sink);
             if (first) {
-                sink_ = sink_of_(table);
+                sink_ = std::move(made);  // only now: rows that are refused are sent once more line by line
             }
-            send_csv(table, sink_->channels(), first, *sink_);
+            return table.rows();
         } catch (const core::InputError& error) {
             core::Place place = error.place();
             if (place.line && place.file == name_) {
@@ -75,6 +148,9 @@ private:
     }
     const std::string& name_;
     const std::function<std::unique_ptr<ChannelSink>(const core::Table&)>& sink_of_;
+    core::Problems& problems_;
+    static constexpr std::size_t most_said = 3;
+    std::size_t good_ = 0, bad_ = 0, bad_in_a_row_ = 0, empty_ = 0, said_ = 0;
     std::string header_;
     std::unique_ptr<ChannelSink> sink_;
     std::int64_t lines_ = 0, header_line_ = 0;
@@ -170,7 +246,7 @@ std::string GrowingStream::first(std::size_t least) {
 void read_csv_stream(ByteStream& stream, const std::string& name,
                      const std::function<std::unique_ptr<ChannelSink>(const core::Table& first_rows)>& sink_of,
                      core::Problems& problems) {
-    CsvStream csv(name, sink_of);
+    CsvStream csv(name, sink_of, problems);
     std::string text;
     std::vector<char> block(1 << 16);
     while (const std::size_t got = stream.read(block.data(), block.size())) {
@@ -189,7 +265,7 @@ void read_csv_stream(ByteStream& stream, const std::string& name,
         const std::int64_t line = csv.next_line();
         const bool first = !csv.any();
         try {
-            csv.take(text);
+            csv.take_whole(text);
         } catch (const core::InputError& error) {
             if (first) {
                 throw;
@@ -199,6 +275,7 @@ void read_csv_stream(ByteStream& stream, const std::string& name,
                                 core::Place{name, line, {}, {}}});
         }
     }
+    csv.sum_up();
     if (!csv.any()) {
         throw core::InputError("missing", "the log has no rows", {name, {}, {}, {}},
                                "a line with the names of the columns, then one line for each reading");

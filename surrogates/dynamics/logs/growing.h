@@ -38,8 +38,10 @@ private:
 
 /// A CSV file's rows to a sink as they come; a last line that is not complete is waited for. `sink_of` is called once,
 /// with the first rows, for the sink that the channels go to. Memory does not grow with the file.
-/// Throws core::InputError with the line in the file: as core::read_csv; no rows at all. A last line that was cut by
-/// the end of the file is left out with a problem.
+/// Throws core::InputError with the line in the file: as core::read_csv within the first 20 rows, or where more than
+/// 100 lines in a row cannot be read; no rows at all. After 20 good rows a line that cannot be read is passed over with
+/// a problem (the first three each, and how many there were). A number that is not finite is no reading, with a
+/// problem. A last line that was cut by the end of the file is left out with a problem.
 void read_csv_stream(ByteStream& stream, const std::string& name,
                      const std::function<std::unique_ptr<ChannelSink>(const core::Table& first_rows)>& sink_of,
                      core::Problems& problems);

@@ -121,6 +121,41 @@ TEST(CsvStream, ALastLineThatWasCutIsLeftOutAndSaid) {
     EXPECT_EQ(read(complete).time, (std::vector<double>{0, 1, 2})) << "only its end of line was missing";
 }
 
+TEST(CsvStream, GoesOnBehindALineThatIsBrokenOrNotFinite) {
+    std::string text = "time [s], gap [mm], input_force [N]\n";
+    for (int i = 0; i < 60; ++i) {
+        text += i == 7    ? "7, nan, 0.5\n"
+                : i == 30 ? "30, 1\n"               // its writer was interrupted
+                : i == 31 ? "31, 130 31, 131, 1\n"  // and began in the middle
+                : i == 40 ? "40, inf, 1\n"
+                : i == 41 ? "nan, 41, 1\n"
+                          : std::to_string(i) + ", " + std::to_string(100 + i) + ", 1\n";
+    }
+    Pieces whole(text, 1, 1 << 20);
+    const Read expected = read(whole);
+    EXPECT_EQ(std::count_if(expected.value.begin(), expected.value.end(), [](double v) { return v < 500; }), 55);
+    EXPECT_EQ(std::count(expected.time.begin(), expected.time.end(), 7), 1) << "the input of the row is used";
+    EXPECT_EQ(std::count(expected.time.begin(), expected.time.end(), 31), 0);
+    ASSERT_GE(expected.problems.size(), 3u);
+    EXPECT_EQ(expected.problems[0].place.line, 9);
+    EXPECT_THAT(expected.problems[0].message, HasSubstr("no reading"));
+    EXPECT_EQ(expected.problems[1].place.line, 32);
+    EXPECT_THAT(expected.problems[1].message, HasSubstr("passed over"));
+    EXPECT_THAT(expected.problems.back().message, HasSubstr("in all 2 lines were passed over, and numbers of 3"));
+    for (std::uint64_t seed = 1; seed < 20; ++seed) {
+        Pieces pieces(text, seed, 30);
+        const Read found = read(pieces);
+        EXPECT_EQ(found.value, expected.value) << seed;
+        EXPECT_EQ(found.problems.size(), expected.problems.size());
+    }
+    std::string lost = text;
+    for (int i = 0; i < 101; ++i) {
+        lost += "oops\n";
+    }
+    EXPECT_THAT(refusal(lost), HasSubstr("run.csv:162"));
+    EXPECT_THAT(refusal("time [s], gap [m]\n0, 1\n1\n2, 1\n"), HasSubstr("run.csv:3")) << "not read well before";
+}
+
 TEST(CsvStream, DamagedBytesAreReadOrRefusedAndNothingElse) {
     core::Random random(8);
     int read_through = 0;
