@@ -264,7 +264,7 @@ int run_export(Shell& shell, const ExportCommand& command) {
         const double error = result.errors[i].second;
         shell.info(table.quantity() + " on a grid of " + grid +
                    (error > 0 ? ", within " + core::format_number(error, 3) + " " + table.unit() +
-                                    (command.table.is_model() ? " of what the model simulates" : " of the full table")
+                                    (command.table.is_model() ? " of the forces of the model" : " of the full table")
                               : ""));
         errors.push_back({{"quantity", result.errors[i].first}, {"unit", table.unit()}, {"max_error", error}});
     }

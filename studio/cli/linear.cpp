@@ -439,6 +439,7 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     const dynamics::Conditions held = given.over(model.conditions);
     const std::vector<double> weights = weights_of(a.weights);
     shell.show(model.remarks);
+    shell.show(dynamics::HeavePlant(model, held).left_out_of_small_motions());
     nlohmann::json json;
     std::string text;
     if (!a.sweep.empty()) {

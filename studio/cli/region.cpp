@@ -292,6 +292,9 @@ int run_region(const RegionArguments& a, Shell& shell) {
     }
     const dynamics::Model model = model_with(a.model, a.set);
     const dynamics::RegionOptions options = options_of(a, model);
+    if (!a.lqr.empty() || shell.json) {  // the document states the damping of equilibria
+        shell.show(dynamics::HeavePlant(model, options.held).left_out_of_small_motions());
+    }
     if (a.loop.given()) {
         return run_region_with_estimator(a.loop, model, options, a.draws, a.seed, a.out, a.table, shell);
     }

@@ -233,7 +233,15 @@ std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
     return text;
 }
 
+/// Gains out of small motions.
+void show_what_gains_leave_out(const SimulateArguments& a, const Job& job, Shell& shell) {
+    if (!a.lqr.empty()) {
+        shell.show(dynamics::HeavePlant(job.model, job.inputs.signals.held).left_out_of_small_motions());
+    }
+}
+
 void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
+    show_what_gains_leave_out(a, job, shell);
     const dynamics::Trajectory motion = dynamics::simulate(
         job.model, job.start.needed_gap(), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
         shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
@@ -246,6 +254,7 @@ void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
 }
 
 void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
+    show_what_gains_leave_out(a, job, shell);
     dynamics::HeavePitch plant(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
     if (const auto feedback = pitch_feedback_of(a.feedback, a.lqr, plant)) {
         plant.close_loop(*feedback);

@@ -218,8 +218,18 @@ TEST_F(EndToEnd, ACableOfTheRigIsFoundAndPredictedAndLeftOutOfTheHeaderAloud) {
     EXPECT_LT(right["channels"]["gap"]["in_noise"].get<double>(), 1.2);
     const auto exported = run_underbody({"export", "found/model.toml", "--axes", "gap", "--out", "after.h"}, folder);
     EXPECT_EQ(exported.exit_code, 0) << exported.errors;
-    EXPECT_THAT(exported.errors, HasSubstr("left out of the force, because it belongs to the rig or to the motion: "
-                                           "tether_stiffness"));
+    const std::string left = "left out of the force, because it belongs to the rig or to the motion: tether_stiffness";
+    EXPECT_THAT(exported.errors, HasSubstr(left));
+    // and where the numbers are read: in the files, and in the JSON of what rests on these forces
+    EXPECT_THAT(core::read_file(folder / "after.h"), HasSubstr("WARNING: " + left));
+    for (const char* format : {"csv", "json"}) {
+        const std::string file = std::string("after.") + format;
+        const json written = json::parse(run({"export", "found/model.toml", "--axes", "gap", "--out", file, "--json"}));
+        EXPECT_THAT(written["warnings"].dump(), HasSubstr(left));
+        EXPECT_THAT(core::read_file(folder / file), HasSubstr(left));
+    }
+    const json balance = json::parse(run({"table", "equilibria", "found/model.toml", "--json"}));
+    EXPECT_THAT(balance["warnings"].dump(), HasSubstr(left));
 }
 
 }  // namespace

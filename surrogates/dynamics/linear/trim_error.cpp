@@ -132,14 +132,13 @@ double heave_force_error(const Model& model, const Conditions& held, double gap,
 
 LinearSystem heave_system(const HeavePlant& plant, double gap, double* stiffness) {
     double slope = 0;
-    const double mass = plant.inertia(gap, slope), speed = 1e-7, step = 1e-6;
-    const double damping = (plant.resistance(gap, speed) - plant.resistance(gap, -speed)) / (2 * speed);
+    const double mass = plant.inertia(gap, slope), step = 1e-6;
     const double k = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
     if (stiffness) {
         *stiffness = k;
     }
     LinearSystem system;
-    system.a = Matrix{{-damping / mass, -k / mass}, {1, 0}};
+    system.a = Matrix{{-plant.damping(gap) / mass, -k / mass}, {1, 0}};
     system.b = Matrix{{1 / mass}, {0}};
     system.states = {"heave_velocity", "gap"};
     system.inputs = {"input_force"};

@@ -36,7 +36,9 @@ Model of_the_vehicle(const Model& model, core::Problems& remarks) {
         return goes;
     });
     if (!left.empty()) {
-        remark(remarks, model, "left out of the force, because it belongs to the rig or to the motion: " + left);
+        const std::string said = "left out of the force, because it belongs to the rig or to the motion: " + left;
+        remark(remarks, model, said);
+        remark(kept.remarks, model, said);  // what its numbers are worth, wherever they are read
     }
     return kept;
 }

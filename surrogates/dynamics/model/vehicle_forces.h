@@ -9,7 +9,8 @@
 namespace underbody::dynamics {
 
 /// The model with declared_parameter carried out and only the static effects of the vehicle kept; what is left out
-/// (effects of the rig and of the motion) is named in the remarks. Throws core::InputError when it has no force source.
+/// (effects of the rig and of the motion) is named in the remarks, and in those of the
+/// model. Throws core::InputError when it has no force source.
 Model of_the_vehicle(const Model& model, core::Problems& remarks);
 
 /// Gives a value to every channel that scales a force and is no axis: the model's condition, else the reference of its

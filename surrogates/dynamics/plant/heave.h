@@ -80,6 +80,11 @@ public:
     [[nodiscard]] HeaveLoad table_lift(double h, double w, const Moment& moment = {}) const;
     /// Resistance of the water and everything else that follows the velocity, N, sign of w. Without history.
     [[nodiscard]] double resistance(double h, double w) const;
+    /// What resists a small motion at rest, N s/m. Coulomb friction has no such slope (its force does not go to nought
+    /// with the velocity) and is left out.
+    [[nodiscard]] double damping(double h) const;
+    /// What is said where numbers rest on small motions; empty without Coulomb friction.
+    [[nodiscard]] core::Problems left_out_of_small_motions() const;
     /// Its parts: the water's drag law at a velocity through the water, and what follows the velocity in the guide or
     /// the film (friction, squeeze film, corrections over the velocity).
     [[nodiscard]] double water_drag(double relative) const;

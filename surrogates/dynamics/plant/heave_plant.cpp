@@ -251,6 +251,30 @@ double HeavePlant::resistance(double h, double w) const {
     return -load.force;
 }
 
+double HeavePlant::damping(double h) const {
+    constexpr double speed = 1e-7;  // m/s
+    HeaveLoad up, down;
+    for (const auto& [w, load] : {std::pair{speed, &up}, std::pair{-speed, &down}}) {
+        add_water_drag<false>(terms, w, *load);
+        add_guided_resistance<false>(terms, h, w, 0, *load);
+    }
+    const double friction = 2 * terms.friction * speed / std::hypot(speed, terms.friction_width);
+    return (down.force - up.force - friction) / (2 * speed);
+}
+
+core::Problems HeavePlant::left_out_of_small_motions() const {
+    if (terms.friction == 0) {
+        return {};
+    }
+    const std::string force = core::format_number(1e3 * terms.friction, 4) + " mN";
+    return {{core::Problem::Severity::warning,
+             "Coulomb friction of " + force +
+                 " has no slope at rest and is left out of modes, damping and gains: they are of motions without it, "
+                 "and near rest it holds the body wherever the other forces balance within " +
+                 force,
+             {}}};
+}
+
 double HeavePlant::wave_force(double t) const { return dynamics::wave_force(terms, t); }
 
 double HeavePlant::other_force(double h, double w, const Moment& moment, const double* memory) const {
@@ -390,8 +414,7 @@ std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
         e.stable = e.stiffness > 0;
         double slope = 0;
         const double mass = plant.inertia(e.gap, slope);
-        const double speed = 1e-7;
-        const double damping = (plant.resistance(e.gap, speed) - plant.resistance(e.gap, -speed)) / (2 * speed);
+        const double damping = plant.damping(e.gap);
         if (e.stable) {
             e.frequency = std::sqrt(e.stiffness / mass);
             e.damping_ratio = damping / (2 * std::sqrt(e.stiffness * mass));

@@ -25,11 +25,10 @@ HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_wei
                         double input_weight) {
     double slope = 0;
     const double mass = plant.inertia(gap, slope);
-    const double step = 1e-6, speed = 1e-7;
+    const double step = 1e-6;
     const double stiffness = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
-    const double damping = (plant.resistance(gap, speed) - plant.resistance(gap, -speed)) / (2 * speed);
     LinearSystem system;
-    system.a = Matrix{{-damping / mass, -stiffness / mass}, {1, 0}};
+    system.a = Matrix{{-plant.damping(gap) / mass, -stiffness / mass}, {1, 0}};
     system.b = Matrix{{1 / mass}, {0}};
     const Regulator k = lqr(system, Matrix::diagonal({velocity_weight, gap_weight}), Matrix::diagonal({input_weight}));
     return {k.gain(0, 1), k.gain(0, 0), gap, 0};

@@ -275,6 +275,11 @@ PitchState HeavePitch::impact(const PitchState& y, ContactState touching) const 
 }
 
 LinearSystem HeavePitch::linearised(double gap, double pitch) const {
+    if (vertical_.terms.friction != 0) {
+        HeavePitch without = *this;
+        without.vertical_.terms.friction = 0;
+        return without.linearised(gap, pitch);
+    }
     const auto rate_of = [&](const double* x, const double* u, double* out) {
         const PitchState y{x[0], x[1], x[2], x[3]};
         PitchState d{};

@@ -86,7 +86,7 @@ public:
     [[nodiscard]] bool remembers() const { return vertical_.terms.history != 0; }
     /// Equilibria in free water within the tables, from the ground up.
     [[nodiscard]] std::vector<HeaveEquilibrium> equilibria() const;
-    /// A of (gap, heave_velocity, pitch, pitch_rate), inputs force up and moment nose up.
+    /// A of (gap, heave_velocity, pitch, pitch_rate), inputs force up and moment nose up; without Coulomb friction.
     [[nodiscard]] LinearSystem linearised(double gap, double pitch) const;
 
 private:

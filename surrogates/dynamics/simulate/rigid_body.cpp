@@ -396,6 +396,11 @@ BodyState RigidBody::impact(const BodyState& y, ContactState touching) const {
 }
 
 LinearSystem linearise_body(const RigidBody& body, const BodyState& trim, const std::vector<double>& thrust) {
+    if (body.vertical().terms.friction != 0) {
+        RigidBody without = body;
+        without.leave_friction_out();
+        return linearise_body(without, trim, thrust);
+    }
     std::vector<std::string> inputs;
     for (const Jet& jet : body.jets()) {
         inputs.push_back(jet.name);

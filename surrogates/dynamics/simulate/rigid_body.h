@@ -76,6 +76,8 @@ public:
     [[nodiscard]] const Model& model() const { return model_; }
     /// Weight, drag, effects: the heave channel without tables.
     [[nodiscard]] const HeavePlant& vertical() const { return vertical_; }
+    /// Coulomb friction has no slope at rest: what is linearised goes without it.
+    void leave_friction_out() { vertical_.terms.friction = 0; }
     [[nodiscard]] bool remembers() const { return vertical_.terms.history != 0; }
 
 private:

@@ -131,7 +131,7 @@ std::string made_from(const ForceTable& table) {
         source += " (content " + core::content_hash_of_file(table.source()) + ")";
     }
     return source + (table.sampling_error() > 0 || table.kind() == "force of a model"
-                         ? ": the forces that this model simulates"
+                         ? ": the forces of this model at a set point"
                          : ": " + std::to_string(table.points().rows()) + " points, fitted as " + table.kind());
 }
 
@@ -204,7 +204,7 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
         const auto& q = grid.quantities[i];
         if (q.difference > 0) {
             const std::string what = tables.size() > 1 ? ": " + q.name : "";
-            lines.push_back((tables[i].sampling_error() > 0 ? "Differs from what the model simulates by at most "
+            lines.push_back((tables[i].sampling_error() > 0 ? "Differs from the forces of the model by at most "
                                                             : "Differs from the full table by at most ") +
                             core::format_number(q.difference, 3) + " " + q.unit + what);
         }

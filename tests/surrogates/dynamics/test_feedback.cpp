@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/linear/trim_error.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "tests/surrogates/dynamics/models.h"
 
@@ -42,6 +43,29 @@ TEST(Feedback, HoldsItsHeightOffByWhatItDoesNotCancel) {  // O88 on the nonlinea
     const auto found = heave_equilibria(plant);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_NEAR(found[0].gap, 0.018260022, 1e-8);
+}
+
+TEST(Feedback, CoulombFrictionIsNoDampingOfSmallMotions) {
+    // Smoothed over 0.1 mm/s it would be 20 N s/m: an overdamped motion and gains that lean on it, beyond 0.1 mm/s
+    // neither.
+    const Model clean = test::ref_a_model(.3, 15);
+    const Model rubs = clean.with_effect(make_use("coulomb_friction", {{"force", 0.002}}));
+    const HeavePlant plain(clean), rubbing(rubs);
+    EXPECT_TRUE(plain.left_out_of_small_motions().empty());
+    ASSERT_EQ(rubbing.left_out_of_small_motions().size(), 1U);
+    EXPECT_NE(rubbing.left_out_of_small_motions()[0].message.find("Coulomb friction of 2 mN"), std::string::npos);
+    const auto without = heave_equilibria(plain), with = heave_equilibria(rubbing);
+    ASSERT_EQ(without.size(), with.size());
+    for (std::size_t i = 0; i < with.size(); ++i) {
+        EXPECT_NEAR(with[i].damping_ratio, without[i].damping_ratio, 1e-12);
+        EXPECT_NEAR(rubbing.damping(with[i].gap), plain.damping(with[i].gap), 1e-9);
+        EXPECT_NEAR(heave_system(rubbing, with[i].gap).a(0, 0), heave_system(plain, with[i].gap).a(0, 0), 1e-9);
+    }
+    const HeaveFeedback a = heave_lqr(plain, 0.05, 1, 100, 1), b = heave_lqr(rubbing, 0.05, 1, 100, 1);
+    EXPECT_NEAR(a.velocity_gain, b.velocity_gain, 1e-9);
+    EXPECT_NEAR(a.gap_gain, b.gap_gain, 1e-9);
+    // the slope that the integrators need is still there
+    EXPECT_GT(rubbing.resistance(0.05, 1e-5), plain.resistance(0.05, 1e-5));
 }
 
 TEST(Feedback, SweepsTheVoltage) {
