@@ -209,8 +209,13 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
                             core::format_number(q.difference, 3) + " " + q.unit + what);
         }
     }
+    const bool thinned =
+        std::any_of(grid.quantities.begin(), grid.quantities.end(), [](const auto& q) { return q.difference > 0; });
     lines.push_back(
-        "sigma is one standard deviation: errors of the points and of the fit between them; 0 where none are known");
+        std::string("sigma is one standard deviation: errors of the points and of the fit between them; 0 where none "
+                    "are known") +
+        (thinned ? "; on these lines never less than that of the full table, and more where that changes between them"
+                 : ""));
 }
 
 }  // namespace

@@ -67,9 +67,38 @@ double ErrorModel::between_nodes(const std::size_t* cell, const double* fraction
 
 namespace {
 
-/// Numbers on a grid whose axis k, `stride` nodes apart, has the lines `from`: of these `to` are left, each with the
-/// largest number of those that go between it and its neighbours.
-std::vector<double> largest_on(const std::vector<double>& numbers, std::size_t stride, const std::vector<double>& from,
+/// One line of numbers at places `from`, of which `kept` are left: straight lines between the new numbers are nowhere
+/// below the old ones. By what the numbers between two that stay rise over the straight line between these, or, where
+/// that is less in all, by the largest of those that go.
+void cover_line(const std::vector<double>& from, const std::vector<std::size_t>& kept, const std::vector<double>& line,
+                std::vector<double>& above) {
+    const std::size_t count = kept.size();
+    std::vector<double> rise(count + 1, 0.0), largest(count);  // rise[i]: between kept i - 1 and i
+    for (std::size_t i = 0; i < count; ++i) {
+        largest[i] = line[kept[i]];
+    }
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        const std::size_t low = kept[i], high = kept[i + 1];
+        for (std::size_t j = low + 1; j < high; ++j) {
+            const double share = (from[j] - from[low]) / (from[high] - from[low]);
+            rise[i + 1] = std::max(rise[i + 1], line[j] - ((1 - share) * line[low] + share * line[high]));
+            largest[i] = std::max(largest[i], line[j]);
+            largest[i + 1] = std::max(largest[i + 1], line[j]);
+        }
+    }
+    double sum = 0, sum_of_largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        above[i] = line[kept[i]] + std::max(rise[i], rise[i + 1]);
+        sum += above[i];
+        sum_of_largest += largest[i];
+    }
+    if (sum_of_largest < sum) {
+        above = largest;
+    }
+}
+
+/// Numbers on a grid whose axis k, `stride` nodes apart, has the lines `from`: of these `to` are left.
+std::vector<double> covered_on(const std::vector<double>& numbers, std::size_t stride, const std::vector<double>& from,
                                const std::vector<double>& to) {
     std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < from.size() && kept.size() < to.size(); ++i) {
@@ -78,14 +107,16 @@ std::vector<double> largest_on(const std::vector<double>& numbers, std::size_t s
         }
     }
     assert(kept.size() == to.size());
-    std::vector<double> result(numbers.size() / from.size() * to.size());
-    for (std::size_t node = 0; node < result.size(); ++node) {
-        const std::size_t i = node / stride % to.size();
-        const std::size_t line = node / stride / to.size() * from.size() * stride + node % stride;
-        const std::size_t first = i == 0 ? kept[i] : kept[i - 1] + 1;
-        const std::size_t last = i + 1 == to.size() ? kept[i] : kept[i + 1] - 1;
-        for (std::size_t j = first; j <= last; ++j) {
-            result[node] = std::max(result[node], numbers[line + j * stride]);
+    std::vector<double> result(numbers.size() / from.size() * to.size()), line(from.size()), above(to.size());
+    for (std::size_t one = 0; one < numbers.size() / from.size(); ++one) {
+        const std::size_t old_begin = one / stride * from.size() * stride + one % stride;
+        const std::size_t new_begin = one / stride * to.size() * stride + one % stride;
+        for (std::size_t j = 0; j < from.size(); ++j) {
+            line[j] = numbers[old_begin + j * stride];
+        }
+        cover_line(from, kept, line, above);
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            result[new_begin + i * stride] = above[i];
         }
     }
     return result;
@@ -157,7 +188,7 @@ ErrorModel ErrorModel::nodes_on(std::vector<std::vector<double>> points) const {
     }
     std::size_t stride = 1;
     for (std::size_t k = n; k-- > 0;) {
-        sigma = largest_on(sigma, stride, all[k], points[k]);
+        sigma = covered_on(sigma, stride, all[k], points[k]);
         stride *= points[k].size();
     }
     ErrorModel result(std::move(points), std::move(sigma));

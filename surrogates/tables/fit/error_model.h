@@ -31,8 +31,8 @@ public:
     /// Standard deviation at a point; `beyond` (one entry per axis) is how far it lies outside.
     [[nodiscard]] double sigma(const double* point, const double* beyond) const noexcept;
 
-    /// On other grid lines inside the axes, never less than this one: a node has the largest error of the nodes that
-    /// went between it and its neighbours, a cell that joins several the largest of theirs.
+    /// On other grid lines inside the axes, never less than this one: a node is raised by what the nodes that went rise
+    /// over the straight line between it and its neighbours, a cell that joins several has the largest error of theirs.
     [[nodiscard]] ErrorModel resampled(std::vector<std::vector<double>> points) const;
     /// Likewise for a consumer that knows nodes only: they carry the cells' errors too, and `more` for all that
     /// straight lines between them miss.

@@ -4,6 +4,7 @@
 
 #include "core/progress.h"
 #include "core/text.h"
+#include "surrogates/tables/fit/error_model.h"
 #include "tests/surrogates/tables/exports_support.h"
 
 namespace underbody {
@@ -88,6 +89,42 @@ TEST(Exports, DoNotLoseTheErrorOfAPointThatThinningLeavesOut) {
     const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
     for (const double gap : {0.0, 0.3, 0.5, 1.0}) {
         EXPECT_NEAR(thin.sigma(&gap), 0.2, 1e-9);
+    }
+}
+
+TEST(Exports, CoverTheErrorOfTheTableByNoMoreThanItRisesBetweenTheLinesThatStay) {
+    core::Random random(8);
+    for (int trial = 0; trial < 50; ++trial) {
+        std::vector<std::vector<double>> lines(2), kept(2);
+        for (std::size_t k = 0; k < 2; ++k) {
+            for (int i = 0; i < 12; ++i) {
+                lines[k].push_back(i == 0 ? 0 : lines[k].back() + random.uniform(0.1, 1));
+                if (i == 0 || i == 11 || random.uniform() < 0.4) {
+                    kept[k].push_back(lines[k].back());
+                }
+            }
+        }
+        std::vector<double> rough, convex;
+        for (const double x : lines[0]) {
+            for (const double y : lines[1]) {
+                rough.push_back(random.uniform());
+                convex.push_back(0.01 * (1 + x * x + std::exp(y)));
+            }
+        }
+        const tables::ErrorModel full(lines, rough), growing(lines, convex);
+        const tables::ErrorModel thin = full.resampled(kept), same = growing.resampled(kept);
+        for (int i = 0; i < 200; ++i) {
+            const double p[2] = {random.uniform(0, lines[0].back()), random.uniform(0, lines[1].back())};
+            EXPECT_GE(thin.sigma(p, nullptr), (1 - 1e-12) * full.sigma(p, nullptr));
+            EXPECT_GE(same.sigma(p, nullptr), (1 - 1e-12) * growing.sigma(p, nullptr));
+        }
+        // What bends upward lies below its chords: nothing is added at the lines.
+        for (const double x : kept[0]) {
+            for (const double y : kept[1]) {
+                const double p[2] = {x, y};
+                EXPECT_NEAR(same.sigma(p, nullptr), growing.sigma(p, nullptr), 1e-12);
+            }
+        }
     }
 }
 
