@@ -90,7 +90,9 @@ std::string format_of(const ExportCommand& command) {
         if (std::filesystem::path(command.out).extension() == format.ending) {
             return format.name;
         }
-        endings += (endings.empty() ? "" : ", ") + format.ending;
+        if ((", " + endings + ",").find(", " + format.ending + ",") == std::string::npos) {  // two formats share one
+            endings += (endings.empty() ? "" : ", ") + format.ending;
+        }
     }
     throw core::UsageError("format", "'" + command.out + "' ends like no export", {},
                            "say --format, or end it in " + endings);

@@ -200,16 +200,24 @@ private:
 
     void say_learned() {
         const double colour = watch_->correlation_time();
+        const double rate = options_.false_alarms_per_day;
+        // The rate was measured with what a minute teaches; of 10 s, 2 of 8 logs alarmed within four minutes.
+        constexpr double enough = 60;  // s
+        const bool stated = options_.learn >= enough;
         say({{"event", "learned"},
              {"time", last_},
              {"gap_noise", watch_->noise()},
              {"correlation_time", colour},
              {"block", watch_->block()},
-             {"false_alarms_per_day", options_.false_alarms_per_day}},
+             {"false_alarms_per_day", rate},
+             {"rate_holds", stated}},
             seconds(last_) + ": watching, noise of the gap " + core::format_number(watch_->noise(), 3) + " m" +
                 (colour > 0 ? " (correlated over " + core::format_number(colour, 2) + " s)" : "") + ", judged every " +
-                core::format_number(watch_->block(), 2) + " s; at most " +
-                core::format_number(options_.false_alarms_per_day, 3) + " false alarms a day");
+                core::format_number(watch_->block(), 2) + " s; " +
+                (stated ? "at most " + core::format_number(rate, 3) + (rate == 1 ? " false alarm" : " false alarms") +
+                              " a day"
+                        : "more false alarms than the " + core::format_number(rate, 3) + " a day asked for: " +
+                              core::format_number(options_.learn, 3) + " s are too short to learn the noise (60 s)"));
     }
 
     void look_for_cause() {

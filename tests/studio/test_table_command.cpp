@@ -65,7 +65,9 @@ TEST(TableCommand, SaysWhatIsWrong) {
     const auto bare = run_underbody({"table", "at", "lift.csv", "gap=5"}, folder.path());
     EXPECT_THAT(
         bare.output,
-        HasSubstr("outside the table by 4900 mm: the end value is held; a bare number is SI, 5 mm would lie inside"));
+        HasSubstr(
+            "outside the table by 4900 mm: the end value is held; it is 5 m (a bare number is SI), and 5 mm would lie "
+            "inside"));
     ASSERT_EQ(run_underbody({"export", "lift.csv", "--out", "lift.h"}, folder.path()).exit_code, 0);
     const auto header = run_underbody({"table", "at", "lift.h", "gap=5mm"}, folder.path());
     EXPECT_EQ(header.exit_code, 3);

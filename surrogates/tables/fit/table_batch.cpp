@@ -36,7 +36,8 @@ core::Problems outside_remarks(const ForceTable& table, const Held& held) {
                            core::format_number(core::convert(beyond, axis->unit, unit), 5) + " " + unit + ": " +
                            outside_words(axis->range);
         if (const double meant = core::convert(value, unit, axis->unit); meant >= axis->lower && meant <= axis->upper) {
-            text += "; a bare number is SI, " + core::format_number(value, 6) + " " + unit + " would lie inside";
+            text += "; it is " + core::format_number(value, 6) + " " + axis->unit + " (a bare number is SI), and " +
+                    core::format_number(value, 6) + " " + unit + " would lie inside";
         }
         remarks.push_back({core::Problem::Severity::warning, text, {table.source(), {}, {}, {}}});
     }
