@@ -219,13 +219,26 @@ void Shell::will_write(const std::string& path) {
     }
 }
 
+namespace {
+
+/// Whether a person sees both streams: there a warning stands once.
+bool read_by_one() { return ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0; }
+
+}  // namespace
+
 void Shell::show(const core::Problems& problems) {
     for (const auto& problem : problems) {
         const std::string text = text_of(problem);
         if (problem.severity == core::Problem::Severity::note) {
             detail(text);
         } else if (said_.insert(text).second) {
-            json || list_on_stdout ? warn(text) : print("warning: " + text);
+            const bool in_text = !json && !list_on_stdout;
+            if (in_text) {
+                print("warning: " + text);
+            }
+            if (!in_text || !read_by_one()) {
+                warn(text);
+            }
             undocumented_.push_back({text, problem.message});
         }
     }

@@ -62,8 +62,9 @@ public:
     void info(const std::string& text);
     void detail(const std::string& text);
     /// Problems that change what the numbers mean, each once and where the numbers are read: in the text a line
-    /// "warning: ..." on stdout (on stderr where stdout is for other programs: `list_on_stdout`); with --json on
-    /// stderr and in the document, whose `warnings` get what it does not hold elsewhere. Notes are detail.
+    /// "warning: ..." on stdout (but where stdout is for other programs: `list_on_stdout`), in the document of --json,
+    /// whose `warnings` get what it does not hold elsewhere; and on stderr, unless both are one terminal. Notes are
+    /// detail.
     void show(const core::Problems& problems);
     void show_warning(const std::string& message) { show({{core::Problem::Severity::warning, message, {}}}); }
     /// The warnings so far as comments of a table that is a result, those that it does not hold.
