@@ -248,7 +248,7 @@ void Shell::comment_warnings(core::Table& table) const {
     for (const Warning& one : undocumented_) {
         if (std::none_of(table.comments.begin(), table.comments.end(),
                          [&](const std::string& comment) { return comment.find(one.message) != std::string::npos; })) {
-            table.comments.push_back("warning: " + one.text);
+            table.comments.push_back("warning: " + with_flags(one.text));
         }
     }
 }
