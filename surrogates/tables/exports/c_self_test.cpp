@@ -14,7 +14,7 @@ namespace underbody::tables {
 
 namespace {
 
-constexpr std::size_t count = 200;
+constexpr std::size_t points_tried = 200;
 
 struct Point {
     std::array<double, max_axes> at{};
@@ -34,7 +34,7 @@ std::vector<Point> test_points(const ExportGrid& grid) {
                (grid.support.empty() ||
                 std::none_of(grid.support.lines()[k].begin(), grid.support.lines()[k].end(), near));
     };
-    while (points.size() < count) {
+    while (points.size() < points_tried) {
         Point point;
         for (std::size_t k = 0; k < grid.axes.size(); ++k) {
             const ExportAxis& axis = grid.axes[k];
@@ -124,7 +124,7 @@ void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& head
     const std::string name = grid.name, axes = std::to_string(n), width = std::to_string(quantities * (n + 2));
     std::string text =
         "/* Self-test of " + header.filename().string() + ", a force table by Underbody: compares it at " +
-        std::to_string(count) + " points with what the program says.\n * cc -std=c99 " +
+        std::to_string(points_tried) + " points with what the program says.\n * cc -std=c99 " +
         c_self_test(header).filename().string() +
         " && ./a.out; the exit code is 0 when all agree, else 1.\n"
         " * With -DUNDERBODY_NO_MAIN it is the function int " +
@@ -134,7 +134,7 @@ void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& head
         array(name + "_test_wanted", wanted) + array(name + "_test_allowed", allowed);
     text += "\nint " + name + "_self_test(void);\nint " + name +
             "_self_test(void) {\n    int failed = 0;\n    unsigned i, k;\n    for (i = 0; i < " +
-            std::to_string(count) + "u; ++i) {\n        const double* wanted = " + name + "_test_wanted + " + width +
+            std::to_string(points_tried) + "u; ++i) {\n        const double* wanted = " + name + "_test_wanted + " + width +
             "u * i;\n        const double* flags = " + name + "_test_flags + 3u * i;\n        " + name +
             "_real point[" + axes + "];\n        " + name + "_result r;\n        double got[" + width +
             "];\n        int good;\n        for (k = 0; k < " + axes + "u; ++k) {\n            point[k] = (" + name +
