@@ -134,8 +134,8 @@ void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& head
         array(name + "_test_wanted", wanted) + array(name + "_test_allowed", allowed);
     text += "\nint " + name + "_self_test(void);\nint " + name +
             "_self_test(void) {\n    int failed = 0;\n    unsigned i, k;\n    for (i = 0; i < " +
-            std::to_string(points_tried) + "u; ++i) {\n        const double* wanted = " + name + "_test_wanted + " + width +
-            "u * i;\n        const double* flags = " + name + "_test_flags + 3u * i;\n        " + name +
+            std::to_string(points_tried) + "u; ++i) {\n        const double* wanted = " + name + "_test_wanted + " +
+            width + "u * i;\n        const double* flags = " + name + "_test_flags + 3u * i;\n        " + name +
             "_real point[" + axes + "];\n        " + name + "_result r;\n        double got[" + width +
             "];\n        int good;\n        for (k = 0; k < " + axes + "u; ++k) {\n            point[k] = (" + name +
             "_real)" + name + "_test_points[" + axes + "u * i + k];\n        }\n        " + name + "_at(point, &r);\n";
