@@ -92,7 +92,8 @@ public:
     }
 
     void take(const std::vector<StatedLoad>& stated) {
-        for (const auto& [quantity, sigma] : iteration_sigmas(result_, stated)) {
+        for (const auto& [name, sigma] : iteration_sigmas(result_, stated)) {
+            const std::string& quantity = name;  // clang 14 takes no name of a pair into the lambda
             const auto load = std::find_if(stated.rbegin(), stated.rend(), [&](const StatedLoad& one) {
                 const bool whole = one.zones.empty() || one.zones.size() >= result_.zones.size();
                 return one.quantity == quantity && one.part == LoadPart::total && one.history && whole;
