@@ -48,14 +48,29 @@ sub function_lengths {
     return @lengths;
 }
 
-# Floating-point numbers that are no constant, default or entry of a list, and are not 0, 1, 2, 0.5, 4 or 10.
+# Numbers without a name: floating-point literals in the middle of an expression. Not counted, because nothing is decided
+# by them or because they have a name where they stand:
+#   - whole numbers below 100,000 however they are written (3, 3.0, 6561: counts, and coefficients of formulas), 0.5, and
+#     1e3, 1e6 or 1e9 as a factor or divisor (millimetres, microseconds, nanoseconds of what is in SI);
+#   - constants (const or constexpr), and what is given to a name as it is: x = 0.1 before , ; ) or }, which are
+#     declarations, defaults, designated initialisers (.prior = 0.01) and fields (options.relative = 1e-9);
+#   - rows of tables: a line of numbers, and what stands in braces with its name in quotes ({"mass", "kg", 1e-3, 5e3})
+#     or in the row of a macro (ITEM(mass, ...)), whose columns the struct names;
+#   - what part of the work is done: report(0.4, "...").
 sub bare_numbers {
     my ($code) = @_;
+    my $number = qr/(?:\d+\.\d*|\.\d+|\d+(?=[eE][-+]?\d))(?:[eE][-+]?\d+)?/;
+    $code =~ s/\bconst(?:expr)?\b[^(;{}=]*(?:=[^;{}]*|(?:=\s*|\w)\{[^;()]*\});/;/g;
+    $code =~ s/(?<=\w) = (\{(?:[-\d.eE+,\s]|(?1))*\})(?=\s*[,;)}])//g;
+    $code =~ s/\{_, [^;{}()]*\}|\{-?$number, _\}|\bITEM\([^;]*;//g;
+    $code =~ s/\breport\($number/report(/g;
+    $code =~ s/(?<=\w) = -?$number(?=\s*[,;)}])//g;
+    $code =~ s{\b1e[369] \*|[*/] 1e[369]\b}{}g;
     my $found = 0;
     for (split /\n/, $code) {
-        next if /\bconst(?:expr)?\b[^(]*=|^\s*[\w:<> ]+ \w+ = [-\w.]+;|^[\s{}\d.,eE+-]+;?$/;
-        for my $number (/(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\.\d+(?:[eE][-+]?\d+)?|\d+[eE][-+]?\d+)(?![\w.])/g) {
-            $found++ unless $number == 0 || $number == 1 || $number == 2 || $number == 0.5 || $number == 4 || $number == 10;
+        next if /^[\s{}\d.,eE+-]+;?\s*$/;
+        for my $literal (/(?<![\w.])($number)(?![\w.])/g) {
+            $found++ unless $literal == int($literal) && $literal < 1e5 || $literal == 0.5;
         }
     }
     return $found;
