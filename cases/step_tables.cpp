@@ -197,9 +197,11 @@ std::string difference_text(const tables::ForceTable& table, const tables::Diffe
         where += (where.empty() ? "" : ", ") + shown_at(table, from) + (to > from ? " to " + shown_at(table, to) : "");
     }
     return "'" + d.second + "' less '" + d.first + "': at most " + core::format_number(d.largest, 3) + " ± " +
-           core::format_number(d.sigma, 2) + " " + table.unit() + ", at " + shown_at(table, d.at) +
-           (where.empty() ? "; nowhere more than twice the joint error of the two."
-                          : "; more than twice the joint error of the two at " + where + ".");
+           (std::isfinite(d.sigma) ? core::format_number(d.sigma, 2) : "(no error known)") + " " + table.unit() +
+           ", at " + shown_at(table, d.at) +
+           (!std::isfinite(d.sigma) ? "; without errors of their points nothing says where they differ."
+            : where.empty()         ? "; nowhere more than twice the joint error of the two."
+                                    : "; more than twice the joint error of the two at " + where + ".");
 }
 
 std::string compute_comparison(const std::vector<std::pair<std::string, tables::ForceTable>>& compared) {

@@ -1,6 +1,7 @@
 #include "core/quantile.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace underbody::core {
@@ -17,5 +18,12 @@ double quantile(std::vector<double> values, double p) {
 }
 
 double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+double central_deviation(std::vector<double> values) {
+    constexpr double one_below = 0.1587, one_above = 0.8413;  // of a normal distribution
+    constexpr std::size_t fewest = 4;
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    return values.size() < fewest ? 0 : (quantile(values, one_above) - quantile(values, one_below)) / 2;
+}
 
 }  // namespace underbody::core

@@ -38,10 +38,16 @@ core::Problems together(core::Problems first, const core::Problems& more) {
 
 }  // namespace
 
-void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json) {
+void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
+                 const std::vector<dynamics::Channel>& moving) {
     json["forces"] = dynamics::fits_json(model);
     for (const std::string& line : dynamics::fit_lines(model)) {
         shell.print(line + "\n");
+    }
+    json["held_at_reference"] = nlohmann::json::array();
+    for (const core::Problem& note : dynamics::held_at_reference(model, held, moving)) {
+        shell.print(note.message + "\n");
+        json["held_at_reference"].push_back(note.message);
     }
     json["warnings"] = said(shell, together(dynamics::held_outside(model, held.over(model.conditions)),
                                             together(dynamics::effects_without_motion(model), table_remarks(model))));

@@ -13,8 +13,10 @@ namespace underbody::studio {
 class Shell;
 
 /// Prints how each force of the model was fitted, and a warning for each condition that is held outside a table; the
-/// same as `forces` and `warnings` in the JSON. `held`: what is given over the model's conditions.
-void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json);
+/// same as `forces` and `warnings` in the JSON. `held`: what is given over the model's conditions. What scales a force
+/// (speed, voltage), is none of the `moving` and is given by nobody is said too, as `held_at_reference`.
+void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
+                 const std::vector<dynamics::Channel>& moving = {});
 
 /// Says the warnings of the model's force tables alone (points that have not settled, outliers, ...) and returns
 /// them for `warnings` of the JSON: for commands whose numbers rest on the tables and that do not show the fits. What

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <type_traits>
 
 #include "core/table.h"
 #include "core/text.h"
@@ -212,7 +213,12 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Simula
     }
     shell.hand_over("motion", [&] { return motion.table(); });
     nlohmann::json json;
-    show_forces(shell, job.model, job.inputs.signals.held, json);
+    auto moving = dynamics::varying_channels(job.inputs.signals);
+    if constexpr (std::is_same_v<Motion, dynamics::SurfaceTrajectory> ||
+                  std::is_same_v<Motion, dynamics::BodyTrajectory>) {
+        moving.push_back(Channel::speed);
+    }
+    show_forces(shell, job.model, job.inputs.signals.held, json, moving);
     if (shell.json) {
         nlohmann::json document;
         dynamics::to_json(document, motion);

@@ -67,6 +67,15 @@ struct AtCommand {
     std::vector<std::string> points;
 };
 
+/// What was chosen for an axis that nobody gave stands beside the numbers.
+void say_choices(Shell& shell, const core::Problems& remarks) {
+    for (const core::Problem& remark : remarks) {
+        if (remark.severity == core::Problem::Severity::note) {
+            shell.print(remark.message);
+        }
+    }
+}
+
 /// Prints a force at a point; the same as JSON.
 nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Held& asked, std::set<std::string>& said) {
     core::Problems remarks;
@@ -81,6 +90,7 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
     }
     std::erase_if(remarks, [&](const core::Problem& remark) { return !said.insert(remark.message).second; });
     shell.show(remarks);
+    say_choices(shell, remarks);
     std::string line = table.quantity() + " " + shown(table, table.quantity(), table.unit(), e.value, 7);
     if (e.sigma > 0) {
         line += " +- " + shown(table, table.quantity(), table.unit(), e.sigma, 3);
@@ -157,6 +167,15 @@ struct EquilibriaCommand {
     int draws = 200;
 };
 
+/// The kick from which a vehicle that comes back leaves the table on its way; 0 where none does.
+double leaving_velocity(const tables::Equilibrium& e) {
+    if (e.limited_by_range || e.up_to_end == e.down_to_end) {
+        return 0;
+    }
+    const double to_end = e.up_to_end ? e.kick_velocity_up : e.kick_velocity_down;
+    return to_end < e.kick_velocity ? to_end : 0;
+}
+
 std::string described(const ForceTable& table, const tables::Equilibria& found, const tables::Equilibrium& e) {
     std::string text = tables::to_string(e.stability) + " at " + shown(table, found.axis, found.axis_unit, e.gap, 6);
     if (e.sigma > 1e-9 * (found.upper - found.lower) && std::isfinite(e.sigma)) {
@@ -165,17 +184,28 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
     if (e.extent > 0) {
         text += ", balanced over " + shown(table, found.axis, found.axis_unit, e.extent, 4);
     }
-    text += "   stiffness " + core::format_number(e.stiffness, 5) + " N/m";
+    const auto with_error = [](double value, int digits, const std::optional<double>& sigma) {
+        return core::format_number(value, digits) +
+               (sigma.value_or(0) > 0 ? " +- " + core::format_number(*sigma, 2) : "");
+    };
+    text += "   stiffness " + with_error(e.stiffness, 5, e.stiffness_sigma) + " N/m";
     if (e.frequency > 0) {
-        text += ", " + core::format_number(e.frequency, 4) + " Hz";
+        text += ", " + with_error(e.frequency, 4, e.frequency_sigma) + " Hz";
     }
     if (e.damping_ratio > 0) {
         text += ", damping ratio " + core::format_number(e.damping_ratio, 3);
     }
     if (e.stability == tables::Stability::stable) {
         text += ", survives a push of " + shown(table, found.axis, found.axis_unit, e.kick_gap, 4);
+        const double to_end = (e.up_to_end ? found.upper : found.lower) - e.gap;
+        const bool push_to_end = (e.up_to_end || e.down_to_end) && e.kick_gap >= (1 - 1e-9) * std::abs(to_end);
+        text += push_to_end ? " (the end of the table)" : "";
         if (e.kick_velocity > 0) {
             text += " or a kick of " + core::format_number(e.kick_velocity, 4) + " m/s";
+        }
+        if (const double leaves = leaving_velocity(e); leaves > 0) {
+            text += " (from " + core::format_number(leaves, 4) + " m/s " + (e.up_to_end ? "up" : "down") +
+                    "ward it leaves the table)";
         }
         text += ", barrier " + core::format_number(e.barrier, 4) + " J";
         text += e.limited_by_range ? " (to the end of the table)" : "";
@@ -223,6 +253,7 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     options.draws = command.draws;
     const auto found = tables::equilibria(table, options);
     shell.show(found.remarks);
+    say_choices(shell, found.remarks);
     for (const auto& e : found.all) {
         shell.print(described(table, found, e));
     }

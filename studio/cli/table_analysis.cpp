@@ -229,9 +229,12 @@ void show_comparison(Shell& shell, const tables::ForceTable& table, const tables
     const std::string unit = table.axes()[tables::axis_index(table, c.axis)].unit;
     const std::string range = "compared over the " + c.axis + " that all have, " +
                               shown(table, c.axis, unit, c.lower, 4) + " to " + shown(table, c.axis, unit, c.upper, 4);
-    shell.print((c.winner.empty() ? "none of them restores"
-                                  : c.winner + " wins by " + c.measure +
-                                        (c.beyond_error ? ", beyond the errors" : ", but within the errors")) +
+    shell.print((c.winner.empty()
+                     ? "none of them restores"
+                     : c.winner + " wins by " + c.measure +
+                           (c.beyond_error   ? ", beyond the errors"
+                            : c.errors_known ? ", but within the errors"
+                                             : "; their points state no errors, so +- is of the interpolation alone")) +
                 "; " + range);
     for (const auto& d : c.differences) {
         std::string where;
@@ -239,11 +242,12 @@ void show_comparison(Shell& shell, const tables::ForceTable& table, const tables
             where += (where.empty() ? "" : ", ") + shown(table, c.axis, unit, from, 4) +
                      (to > from ? " to " + shown(table, c.axis, unit, to, 4) : "");
         }
-        shell.print(
-            d.second + " less " + d.first + ": at most " + five_digits(d.largest, 3) + " +- " +
-            (d.sigma > 0 ? five_digits(d.sigma, 2) : std::string("(no error known)")) + " " + table.unit() + ", at " +
-            shown(table, c.axis, unit, d.at, 4) +
-            (where.empty() ? "; nowhere beyond twice the joint error" : "; beyond twice the joint error at " + where));
+        shell.print(d.second + " less " + d.first + ": at most " + five_digits(d.largest, 3) + " +- " +
+                    (std::isfinite(d.sigma) ? five_digits(d.sigma, 2) : std::string("(no error known)")) + " " +
+                    table.unit() + ", at " + shown(table, c.axis, unit, d.at, 4) +
+                    (!std::isfinite(d.sigma) ? ""
+                     : where.empty()         ? "; nowhere beyond twice the joint error"
+                                             : "; beyond twice the joint error at " + where));
     }
 }
 

@@ -52,6 +52,46 @@ protected:
     }
 };
 
+TEST_F(ModelForces, TableAndLinearStateOneErrorOfAStiffness) {
+    const nlohmann::json table = json({"table", "equilibria", "model.toml"}), linear = json({"linear", "model.toml"});
+    const nlohmann::json &of_table = table["equilibria"], &of_linear = linear["equilibria"];
+    ASSERT_EQ(of_table.size(), of_linear.size());
+    for (std::size_t i = 0; i < of_table.size(); ++i) {
+        const double k = of_linear[i]["stiffness"];
+        EXPECT_NEAR(of_table[i]["stiffness"].get<double>(), k, 0.01 * std::abs(k));
+        // Both are spreads of some hundred draws: each known to about 7 %.
+        EXPECT_NEAR(of_table[i]["stiffness_sigma"].get<double>(), of_linear[i]["stiffness_sigma"].get<double>(),
+                    0.3 * of_linear[i]["stiffness_sigma"].get<double>());
+    }
+}
+
+TEST_F(ModelForces, WhatHoldsAForceAtItsReferenceIsSaid) {
+    core::write_file(folder_.path() / "one.csv", "gap [mm], lift_force [mN]\n1, 80\n5, 20\n20, 2\n");
+    core::write_file(folder_.path() / "scaled.toml",
+                     "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"10 mN\"\n"
+                     "[[force]]\nquantity = \"lift_force\"\ntable = \"one.csv\"\n"
+                     "scale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n");
+    const std::string said = "speed is not given: lift_force is that at its reference, speed 0.5 m/s";
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"linear", "scaled.toml"},
+                                                    {"simulate", "scaled.toml", "--from", "gap=5mm", "--for", "1"}}) {
+        EXPECT_EQ(json(command)["held_at_reference"], nlohmann::json({said})) << command.front();
+        EXPECT_THAT(run_underbody(command, folder_.path()).output, HasSubstr(said));
+        std::vector<std::string> given = command;
+        given.insert(given.end(), {"--conditions", "speed=0.4"});
+        EXPECT_EQ(json(given)["held_at_reference"], nlohmann::json::array()) << command.front();
+    }
+}
+
+TEST_F(ModelForces, ATableInAxesThatPointDownHasNoBalance) {
+    const auto written = run_underbody(
+        {"export", "lift.csv", "--frame", "ned", "--format", "json", "--out", "down.json", "--where", "speed=0.5"},
+        folder_.path());
+    ASSERT_EQ(written.exit_code, 0) << written.errors;
+    const auto run = run_underbody({"table", "equilibria", "down.json", "--weight", "10 mN"}, folder_.path());
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_THAT(run.errors, HasSubstr("z_force = -lift_force"));
+}
+
 TEST_F(ModelForces, TableAtTakesTheConditionsOfTheModelUnlessThePointSaysOtherwise) {
     const nlohmann::json held = json({"table", "at", "model.toml", "gap=4mm"}),
                          given = json({"table", "at", "bare.toml", "gap=4mm,speed=0.5"}),

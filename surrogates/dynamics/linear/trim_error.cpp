@@ -5,26 +5,12 @@
 #include <functional>
 
 #include "core/parallel.h"
+#include "core/quantile.h"
 #include "surrogates/dynamics/model/force_error.h"
 
 namespace underbody::dynamics {
 
 namespace {
-
-/// Half the range from 15.87 to 84.13 % of the values: one standard deviation of normal ones, whatever the tails.
-double spread(std::vector<double> values) {
-    std::erase_if(values, [](double v) { return !std::isfinite(v); });
-    if (values.size() < 4) {
-        return 0;
-    }
-    std::sort(values.begin(), values.end());
-    const auto at = [&](double share) {
-        const double place = share * static_cast<double>(values.size() - 1);
-        const auto i = std::min(static_cast<std::size_t>(place), values.size() - 2);
-        return values[i] + (place - static_cast<double>(i)) * (values[i + 1] - values[i]);
-    };
-    return (at(0.8413) - at(0.1587)) / 2;
-}
 
 /// Effects whose numbers reach the force at rest past the tables: of the motion, or a declared number that is no
 /// table's.
@@ -84,7 +70,7 @@ TrimError spread_of(std::size_t draws, const std::vector<Mode>& own, const std::
                           : 0U;
         }
     }
-    error.stiffness = spread(stiffness);
+    error.stiffness = core::central_deviation(stiffness);
     error.stable = known > 0 ? static_cast<double>(stable) / static_cast<double>(known) : std::nan("");
     for (std::size_t m = 0; m < own.size(); ++m) {
         std::vector<double> real, imaginary, frequency, ratio;
@@ -99,7 +85,8 @@ TrimError spread_of(std::size_t draws, const std::vector<Mode>& own, const std::
         const double none = std::nan("");
         error.modes.push_back(10 * like < 9 * known
                                   ? ModeError{none, none, none, none}
-                                  : ModeError{spread(real), spread(imaginary), spread(frequency), spread(ratio)});
+                                  : ModeError{core::central_deviation(real), core::central_deviation(imaginary),
+                                              core::central_deviation(frequency), core::central_deviation(ratio)});
     }
     return error;
 }

@@ -56,6 +56,23 @@ core::Problems held_outside(const Model& model, const Conditions& held) {
     return found;
 }
 
+core::Problems held_at_reference(const Model& model, const Conditions& held, const std::vector<Channel>& moving) {
+    core::Problems found;
+    for (const ForceSource& source : model.forces) {
+        for (const ForceScale& scale : source.scales) {
+            const bool moves = std::find(moving.begin(), moving.end(), scale.channel) != moving.end();
+            if (!moves && !held.over(model.conditions).has(scale.channel)) {
+                const std::string name(channel_name(scale.channel));
+                found.push_back({core::Problem::Severity::note,
+                                 name + " is not given: " + source.quantity + " is that at its reference, " + name +
+                                     " " + core::format_number(scale.reference, 6) + " " + channel_unit(scale.channel),
+                                 {model.name, {}, {}, {}}});
+            }
+        }
+    }
+    return found;
+}
+
 namespace {
 
 /// The values of all runs beyond one axis of a table.

@@ -21,6 +21,10 @@ nlohmann::json fits_json(const Model& model);
 /// `held`: what is given over the model's own conditions; what varies in the motion is not among them.
 core::Problems held_outside(const Model& model, const Conditions& held);
 
+/// A note for every condition that scales a force and that nobody gives: the force is that at the scale's reference.
+/// Not of `moving` channels, which the motion or a signal gives; `held` as above.
+core::Problems held_at_reference(const Model& model, const Conditions& held, const std::vector<Channel>& moving);
+
 /// The same of what was measured: a warning for every axis of a force table beyond which measured values lie (columns,
 /// conditions of the runs, else the model's), with the range that they have there and in how many rows. Not of the gap
 /// of a time series: predictions, estimates and discovery say themselves what becomes of its readings outside.

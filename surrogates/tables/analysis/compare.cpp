@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/force_table_impl.h"
 
 namespace underbody::tables {
 
@@ -96,9 +97,16 @@ Measure chosen(const std::optional<Measure>& asked, const std::string& quantity,
                                                      : Measure::highest);
 }
 
+/// Without an error of its points nothing can be said of a table: that of the interpolation vanishes at them.
+bool states_errors(const ForceTable& table) {
+    const auto& sigma = table.impl().error.node_sigma();
+    return std::any_of(sigma.begin(), sigma.end(), [](double s) { return s > 0; });
+}
+
 Difference difference(const std::string& a_name, Slice a, const std::string& b_name, Slice b, double low, double high) {
     Difference d{a_name, b_name, {}, 0, low, 0};
     bool open = false;
+    const bool known = states_errors(*a.table) && states_errors(*b.table);
     for (int i = 0; i <= samples; ++i) {
         const double x = low + (high - low) * i / samples;
         double sa = 0, sb = 0;
@@ -107,9 +115,9 @@ Difference difference(const std::string& a_name, Slice a, const std::string& b_n
         if (std::abs(gap) > std::abs(d.largest)) {
             d.largest = gap;
             d.at = x;
-            d.sigma = joint;
+            d.sigma = known ? joint : std::nan("");
         }
-        const bool beyond = joint > 0 && std::abs(gap) > 2 * joint;  // without an error nothing can be said
+        const bool beyond = known && std::abs(gap) > 2 * joint;
         if (beyond && !open) {
             d.beyond_error.emplace_back(x, x);
         } else if (beyond) {
@@ -198,18 +206,21 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
     const bool none = is_restoring(measure) && !(result.values[order[0]] > 0);
     if (order.size() > 1 && !none) {
         result.winner = result.names[order[0]];
-        result.beyond_error = std::abs(result.values[order[0]] - result.values[order[1]]) >
-                              2 * std::hypot(result.errors[order[0]], result.errors[order[1]]);
+        result.errors_known =
+            std::all_of(tables.begin(), tables.end(), [](const auto& table) { return states_errors(table.second); });
+        result.beyond_error =
+            result.errors_known && std::abs(result.values[order[0]] - result.values[order[1]]) >
+                                       2 * std::hypot(result.errors[order[0]], result.errors[order[1]]);
     }
     return result;
 }
 
 void to_json(nlohmann::json& json, const Comparison& c) {
     json = nlohmann::json{
-        {"quantity", c.quantity},        {"axis", c.axis},
-        {"measure", c.measure},          {"unit", c.unit},
-        {"range", {c.lower, c.upper}},   {"winner", c.winner.empty() ? nlohmann::json() : nlohmann::json(c.winner)},
-        {"beyond_error", c.beyond_error}};
+        {"quantity", c.quantity},         {"axis", c.axis},
+        {"measure", c.measure},           {"unit", c.unit},
+        {"range", {c.lower, c.upper}},    {"winner", c.winner.empty() ? nlohmann::json() : nlohmann::json(c.winner)},
+        {"beyond_error", c.beyond_error}, {"errors_known", c.errors_known}};
     for (std::size_t i = 0; i < c.names.size(); ++i) {
         json["variants"].push_back({{"name", c.names[i]}, {"value", c.values[i]}, {"sigma", c.errors[i]}});
     }
@@ -218,7 +229,7 @@ void to_json(nlohmann::json& json, const Comparison& c) {
                                        {"second", d.second},
                                        {"largest", d.largest},
                                        {"at", d.at},
-                                       {"sigma", d.sigma},
+                                       {"sigma", std::isfinite(d.sigma) ? nlohmann::json(d.sigma) : nlohmann::json()},
                                        {"beyond_error", d.beyond_error}});
     }
 }

@@ -42,7 +42,7 @@ struct Difference {
     std::vector<std::pair<double, double>> beyond_error;  ///< ranges of the axis, SI
     double largest = 0;                                   ///< second - first where it is largest in size
     double at = 0;                                        ///< there
-    double sigma = 0;                                     ///< joint error there
+    double sigma = 0;                                     ///< joint error there; NaN where points state none
 };
 
 struct Comparison {
@@ -53,6 +53,7 @@ struct Comparison {
     std::vector<double> values;  ///< of the measure, one a table
     std::vector<double> errors;  ///< one standard deviation of it, from 40 draws of each table
     std::string winner;          ///< empty when none restores, and for a single table
+    bool errors_known = false;   ///< the points of all state errors; else `errors` are of the interpolation alone
     bool beyond_error = false;   ///< the winner leads the next by more than twice the joint error
     std::vector<Difference> differences;
 };

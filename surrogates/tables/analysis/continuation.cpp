@@ -134,6 +134,7 @@ EquilibriumCurve continue_equilibria(const ForceTable& table, const Continuation
     if (!(options.lower < options.upper)) {
         throw core::UsageError("range", "the range of " + options.parameter + " has its ends swapped or no width");
     }
+    require_lift(table);
     NetForce force(table, options);
     const TableAxis& axis = table.axes()[force.axis()];
     std::vector<double> gaps = axis.lower > 0 && axis.upper / axis.lower > 4

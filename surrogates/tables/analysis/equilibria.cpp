@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/quantile.h"
+#include "core/units.h"
 #include "surrogates/tables/fit/table_batch.h"
 
 namespace underbody::tables {
@@ -14,6 +16,7 @@ namespace underbody::tables {
 namespace {
 
 std::size_t free_axis(const ForceTable& table, const std::string& name) {
+    require_lift(table);
     if (!name.empty()) {
         return axis_index(table, name);
     }
@@ -51,6 +54,8 @@ void fill_kicks(Equilibrium& e, const Line& force, const std::vector<Equilibrium
     const bool has_below = index > 0;
     const double above = has_above ? all[index + 1].gap : force.upper();
     const double below = has_below ? all[index - 1].gap : force.lower();
+    e.up_to_end = !has_above;
+    e.down_to_end = !has_below;
     e.barrier_up = std::max(0.0, climb(force, e.gap, above));
     e.barrier_down = std::max(0.0, climb(force, e.gap, below));
     // At an end of the table the force still drives back: no escape there, unless nothing else limits the kick.
@@ -99,14 +104,40 @@ std::vector<Equilibrium> find(const Line& force) {
     return found;
 }
 
-/// Share of drawn tables in which each equilibrium has one of its kind near by.
-void fill_probabilities(Equilibria& result, const ForceTable& table, std::size_t axis, const std::vector<double>& point,
-                        const EquilibriumOptions& options) {
+/// What a drawn table makes of the stiffness where the equilibrium moves to in it.
+double stiffness_in(const Line& drawn, const Equilibrium& e) {
+    double slope = 0;
+    const double moved = drawn.value(e.gap) / e.stiffness;
+    drawn.value(std::clamp(e.gap + moved, drawn.lower(), drawn.upper()), &slope);
+    return -slope;
+}
+
+void set_errors(Equilibrium& e, const std::vector<double>& stiffness, double mass) {
+    if (e.stability == Stability::marginal || e.sigma == 0) {
+        return;
+    }
+    e.stiffness_sigma = core::central_deviation(stiffness);
+    if (e.frequency > 0) {
+        std::vector<double> frequency;
+        for (const double k : stiffness) {
+            frequency.push_back(std::sqrt(k / mass) / (2 * std::numbers::pi));  // no number where it would be unstable
+        }
+        e.frequency_sigma = core::central_deviation(std::move(frequency));
+    }
+}
+
+/// From drawn tables: the errors of stiffness and frequency, and in what share each equilibrium has one of its kind
+/// near by.
+void fill_from_draws(Equilibria& result, const ForceTable& table, std::size_t axis, const std::vector<double>& point,
+                     const EquilibriumOptions& options) {
     std::vector<int> hits(result.all.size(), 0);
+    std::vector<std::vector<double>> stiffness(result.all.size());
     for (int draw = 0; draw < options.draws; ++draw) {
-        const auto found = find(line_of(table.drawn(static_cast<std::uint64_t>(draw)), axis, point, options));
+        const Line drawn = line_of(table.drawn(static_cast<std::uint64_t>(draw)), axis, point, options);
+        const auto found = find(drawn);
         for (std::size_t i = 0; i < result.all.size(); ++i) {
             const Equilibrium& e = result.all[i];
+            stiffness[i].push_back(stiffness_in(drawn, e));
             // No nearer than half way to the neighbours counts as the same one.
             double reach = std::isfinite(e.sigma) ? 4 * e.sigma : result.upper - result.lower;
             reach = std::max(reach, 1e-9 * (result.upper - result.lower));
@@ -117,6 +148,7 @@ void fill_probabilities(Equilibria& result, const ForceTable& table, std::size_t
     }
     for (std::size_t i = 0; i < result.all.size(); ++i) {
         result.all[i].probability = static_cast<double>(hits[i]) / options.draws;
+        set_errors(result.all[i], stiffness[i], options.virtual_mass);
     }
 }
 
@@ -134,6 +166,21 @@ std::vector<double> Equilibria::gaps(Stability stability) const {
         }
     }
     return found;
+}
+
+void require_lift(const ForceTable& table) {
+    static const char* const others[] = {"z_force", "x_force", "y_force"};
+    const std::string& quantity = table.quantity();
+    const bool known = core::find_quantity(quantity) != nullptr ||
+                       std::find(std::begin(others), std::end(others), quantity) != std::end(others);
+    if (quantity == "lift_force" || (!known && table.unit() == "N")) {
+        return;
+    }
+    throw core::UsageError("quantity", "a net weight is balanced by the lift, and this is a table of " + quantity,
+                           {table.source(), {}, {}, {}},
+                           quantity == "z_force"
+                               ? "z_force = -lift_force, positive down: export the table with up positive"
+                               : "choose lift_force where the table has it");
 }
 
 Line net_force(const ForceTable& table, const EquilibriumOptions& options) {
@@ -191,7 +238,7 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
         }
     }
     if (options.draws > 0) {
-        fill_probabilities(result, table, axis, point, options);
+        fill_from_draws(result, table, axis, point, options);
     }
     return result;
 }
@@ -200,6 +247,7 @@ namespace {
 nlohmann::json finite_or_null(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
+nlohmann::json or_null(const std::optional<double>& value) { return value ? finite_or_null(*value) : nlohmann::json(); }
 }  // namespace
 
 void to_json(nlohmann::json& json, const Equilibrium& e) {
@@ -207,8 +255,10 @@ void to_json(nlohmann::json& json, const Equilibrium& e) {
                           {"stable", e.stability == Stability::stable},
                           {"stability", to_string(e.stability)},
                           {"stiffness", e.stiffness},
+                          {"stiffness_sigma", or_null(e.stiffness_sigma)},
                           {"sigma", finite_or_null(e.sigma)},
                           {"frequency", e.frequency},
+                          {"frequency_sigma", or_null(e.frequency_sigma)},
                           {"angular_frequency", 2 * std::numbers::pi * e.frequency},
                           {"growth_rate", e.growth_rate},
                           {"damping_ratio", e.damping_ratio},
@@ -216,6 +266,8 @@ void to_json(nlohmann::json& json, const Equilibrium& e) {
                           {"barrier_up", e.barrier_up},
                           {"barrier_down", e.barrier_down},
                           {"limited_by_range", e.limited_by_range},
+                          {"up_to_end", e.up_to_end},
+                          {"down_to_end", e.down_to_end},
                           {"kick_velocity", e.kick_velocity},
                           {"kick_velocity_up", e.kick_velocity_up},
                           {"kick_velocity_down", e.kick_velocity_down},

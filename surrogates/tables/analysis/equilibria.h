@@ -36,7 +36,9 @@ struct Equilibrium {
     double stiffness = 0;  ///< N/m, -dF/dh: positive restores
     double sigma =
         0;  ///< m, one standard deviation of the gap from the table's error; 0 without errors, infinite when marginal
-    double frequency = 0;      ///< Hz, sqrt(k/S)/(2 pi) of a stable one
+    double frequency = 0;  ///< Hz, sqrt(k/S)/(2 pi) of a stable one
+    /// One standard deviation of both from as many drawn tables as asked for; nothing without draws or errors.
+    std::optional<double> stiffness_sigma, frequency_sigma;
     double growth_rate = 0;    ///< 1/s, sqrt(-k/S) of an unstable one
     double damping_ratio = 0;  ///< of a stable one, from options.damping
     /// Largest work it survives without drag, J: the barrier to the nearer unstable equilibrium. Where there is none on
@@ -45,6 +47,9 @@ struct Equilibrium {
     double barrier_up = 0;    ///< J, upward to the next unstable equilibrium or the upper end
     double barrier_down = 0;  ///< J, downward likewise
     bool limited_by_range = false;
+    bool up_to_end = false;  ///< no unstable one above: what is survived upward leads past the table, where its policy
+                             ///< for the outside decides, or up to there
+    bool down_to_end = false;  ///< likewise below
     double kick_velocity =
         0;  ///< m/s, sqrt(2 barrier/S): the largest sudden heave velocity it survives in either direction
     double kick_velocity_up = 0;    ///< m/s, sqrt(2 barrier_up/S): upward to the next unstable equilibrium or the end
@@ -76,8 +81,13 @@ struct Equilibria {
 };
 
 /// All equilibria in the table's range. Throws core::UsageError for a held value that is missing or no axis, a mass
-/// that is negative. Cheap enough for every move of a mouse (microseconds for a table of one axis) when `draws` is 0.
+/// that is negative, a table of what no net weight balances (a drag, a moment, a lift in axes that point down). Cheap
+/// enough for every move of a mouse (microseconds for a table of one axis) when `draws` is 0.
 Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options);
+
+/// Throws core::UsageError for a table of what no net weight balances: a drag, a moment, a lift in axes that point
+/// down.
+void require_lift(const ForceTable& table);
 
 /// The net force along the axis whose zeros these are.
 Line net_force(const ForceTable& table, const EquilibriumOptions& options);

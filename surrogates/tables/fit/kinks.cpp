@@ -8,6 +8,24 @@
 
 namespace underbody::tables {
 
+namespace {
+
+/// " (pitch 2 deg)": where a point lies along the other axes; empty with one axis.
+std::string other_axes(const SetPoints& points, std::size_t along, std::size_t row) {
+    std::string text;
+    for (std::size_t k = 0; k < points.axes.size(); ++k) {
+        if (k != along) {
+            const core::Column* column = points.table.find(points.axes[k].name);
+            const std::string unit = column->written_unit.empty() ? column->unit : column->written_unit;
+            text += ", " + points.axes[k].name + " " +
+                    core::format_number(core::convert(points.x[row][k], column->unit, unit), 6) + " " + unit;
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
 core::Problems kinks(const SetPoints& points) {
     core::Problems found;
     if (!points.full_grid || !points.has_sigma()) {
@@ -45,8 +63,8 @@ core::Problems kinks(const SetPoints& points) {
                 found.push_back({core::Problem::Severity::warning,
                                  "the turn at " + points.axes[k].name + " " +
                                      core::format_number(core::convert(x[i], column->unit, unit), 6) + " " + unit +
-                                     " (" + core::format_number(height, 3) + " " + points.unit +
-                                     ") is not supported by the errors of the points (" +
+                                     other_axes(points, k, here) + " (" + core::format_number(height, 3) + " " +
+                                     points.unit + ") is not supported by the errors of the points (" +
                                      core::format_number(joint, 3) + " " + points.unit + ")",
                                  points.table.place(points.row[here], points.quantity)});
             }

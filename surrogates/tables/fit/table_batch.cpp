@@ -1,6 +1,7 @@
 #include "surrogates/tables/fit/table_batch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/text.h"
@@ -21,6 +22,9 @@ double beyond_points(const ForceTable& table, const double* point) {
     return table.impl().hull ? table.impl().hull->distance(point) : 0;
 }
 
+/// A number without its unit is off by 57 (degrees) or 1,000 (mm); one beyond the axis by less was meant as it stands.
+constexpr double far_outside = 5;
+
 core::Problems outside_remarks(const ForceTable& table, const Held& held) {
     core::Problems remarks;
     for (const auto& [name, value] : held) {
@@ -35,7 +39,9 @@ core::Problems outside_remarks(const ForceTable& table, const Held& held) {
         std::string text = axis->name + " is outside the table by " +
                            core::format_number(core::convert(beyond, axis->unit, unit), 5) + " " + unit + ": " +
                            outside_words(axis->range);
-        if (const double meant = core::convert(value, unit, axis->unit); meant >= axis->lower && meant <= axis->upper) {
+        const double meant = core::convert(value, unit, axis->unit);
+        const bool far = std::abs(value) > far_outside * std::max(std::abs(axis->lower), std::abs(axis->upper));
+        if (far && meant >= axis->lower && meant <= axis->upper) {
             text += "; it is " + core::format_number(value, 6) + " " + axis->unit + " (a bare number is SI), and " +
                     core::format_number(value, 6) + " " + unit + " would lie inside";
         }

@@ -243,6 +243,17 @@ TEST(Comparison, NamesNoWinnerWhereNothingRestores) {
     EXPECT_NEAR(strongest.values[0], 2, 1e-9);
 }
 
+TEST(Comparison, SaysNothingOfErrorsThatThePointsDoNotState) {
+    const auto a = monotone(csv("gap [m], lift_force [N]\n0, 1\n0.5, .8\n1, .2\n"));
+    const auto b = monotone(csv("gap [m], lift_force [N]\n0, 1\n0.5, .801\n1, .199\n"));
+    const auto result = compare_tables({{"a", a}, {"b", b}}, {});
+    EXPECT_FALSE(result.errors_known);
+    EXPECT_FALSE(result.beyond_error);
+    ASSERT_EQ(result.differences.size(), 1u);
+    EXPECT_TRUE(result.differences[0].beyond_error.empty()) << "at the points the interpolation has no error";
+    EXPECT_TRUE(nlohmann::json(result)["differences"][0]["sigma"].is_null());
+}
+
 TEST(Comparison, AsksADragForNoRestoringSlope) {
     const auto a = monotone(csv("gap [m], drag_force [N], drag_force_sigma [N]\n0, 1, .01\n0.5, .7, .01\n1, .5, .01\n"),
                             "drag_force");
@@ -369,6 +380,19 @@ TEST(Kinks, AreNamedWithThePointThatCausesThem) {
     }
     EXPECT_THAT(remarks, HasSubstr("the turn at gap 2 mm"));
     EXPECT_THAT(remarks, HasSubstr("not supported"));
+}
+
+TEST(Kinks, AreNamedWithAllTheirAxes) {
+    const auto table =
+        ForceTable::fit(csv("gap [mm], pitch [deg], lift_force [N], lift_force_sigma [N]\n1,0,1,.05\n2,0,.8,.05\n"
+                            "3,0,.83,.05\n1,2,1.1,.05\n2,2,.9,.05\n3,2,.94,.05\n"),
+                        "lift_force");
+    std::string remarks;
+    for (const auto& r : table.remarks()) {
+        remarks += r.message + "\n";
+    }
+    EXPECT_THAT(remarks, HasSubstr("the turn at gap 2 mm, pitch 0 deg (0.03 N)"));
+    EXPECT_THAT(remarks, HasSubstr("the turn at gap 2 mm, pitch 2 deg (0.04 N)"));
 }
 
 }  // namespace

@@ -197,6 +197,60 @@ TEST(Equilibria, KnowHowSureTheyAre) {
     EXPECT_GT(*e.probability, 0.97);
 }
 
+TEST(Equilibria, StateTheErrorOfTheirStiffness) {
+    // Independent errors s of the points of a coarse grid: near the middle of a straight line the slope of the cubic
+    // between two points h apart scatters by about s times the square root of 2 over h, at most half as much again.
+    const auto table = monotone(
+        csv("gap [m], lift_force [N], lift_force_sigma [N]\n0, 1, 0.01\n0.25, 0.75, 0.01\n0.5, 0.5, 0.01\n0.75, "
+            "0.25, 0.01\n1, 0, 0.01\n"));
+    EquilibriumOptions options;
+    options.net_weight = 0.4;
+    options.virtual_mass = 2;
+    EXPECT_FALSE(equilibria(table, options).all.at(0).stiffness_sigma.has_value()) << "needs draws";
+    options.draws = 400;
+    const auto e = equilibria(table, options).all.at(0);
+    const double expected = 0.01 * std::sqrt(2.0) / 0.25;
+    ASSERT_TRUE(e.stiffness_sigma && e.frequency_sigma);
+    EXPECT_GT(*e.stiffness_sigma, 0.3 * expected);
+    EXPECT_LT(*e.stiffness_sigma, 1.6 * expected);
+    EXPECT_NEAR(*e.frequency_sigma, 0.5 * e.frequency * *e.stiffness_sigma / e.stiffness, 0.1 * *e.frequency_sigma);
+}
+
+TEST(Equilibria, AreOfALiftAlone) {
+    const auto refused = [](const char* heading) {
+        const auto table = ForceTable::fit(csv(std::string("gap [m], ") + heading + "\n0, 1\n1, 0\n"),
+                                           std::string(heading).substr(0, std::string(heading).find(' ')), {});
+        try {
+            equilibria(table, {});
+        } catch (const core::UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(refused("drag_force [N]"), testing::HasSubstr("balanced by the lift"));
+    EXPECT_THAT(refused("pitch_moment [N m]"), testing::HasSubstr("a table of pitch_moment"));
+    EXPECT_THAT(refused("z_force [N]"), testing::HasSubstr("z_force = -lift_force"));
+    EXPECT_THAT(refused("thrust_up [N m]"), testing::HasSubstr("balanced by the lift"));
+    EXPECT_EQ(refused("force_up [N]"), "") << "a name of the user's own, in N";
+}
+
+TEST(Equilibria, SayWhichWayTheTableEndsFirst) {
+    // Stable at 0.2 and 0.9 with a repelling one at 0.6 between: above 0.9 nothing but the end of the table.
+    const auto table =
+        monotone(csv("gap [m], lift_force [N]\n0, 0.6\n0.2, 0.5\n0.4, 0.3\n0.6, 0.5\n0.75, "
+                     "0.8\n0.9, 0.5\n1, 0.45\n"));
+    EquilibriumOptions options;
+    options.net_weight = 0.5;
+    options.virtual_mass = 1;
+    const auto found = equilibria(table, options);
+    ASSERT_EQ(found.all.size(), 3u);
+    EXPECT_TRUE(found.all[2].up_to_end);
+    EXPECT_FALSE(found.all[2].down_to_end);
+    EXPECT_TRUE(found.all[0].down_to_end);
+    EXPECT_FALSE(found.all[0].up_to_end);
+    EXPECT_LT(found.all[2].kick_velocity_up, found.all[2].kick_velocity);
+}
+
 TEST(Equilibria, ComeOutAsTheJsonOfTheInterface) {
     EquilibriumOptions options;
     options.virtual_mass = 4;
