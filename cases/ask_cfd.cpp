@@ -65,7 +65,7 @@ std::vector<double> times_of(const Study& study) {
 
 std::size_t cases_of_a_body(const SweepSpec& sweep) {
     return std::max<std::size_t>(1, sweep.gaps.size()) * std::max<std::size_t>(1, sweep.pitches.size()) *
-           std::max<std::size_t>(1, sweep.speeds.size()) * std::max<std::size_t>(1, sweep.jet_flows.size());
+           std::max<std::size_t>(1, sweep.speeds.size()) * sweep.jet.count();
 }
 
 std::string duration_text(double seconds) {

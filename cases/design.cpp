@@ -6,6 +6,7 @@
 
 #include "cases/design_file.h"
 #include "cases/volume_fault.h"
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -35,18 +36,6 @@ const std::vector<double>& numbers_of(const core::Table& table, const SearchVari
 
 std::vector<std::string> text_or(const core::Table& table, const std::string& name, const std::string& fallback) {
     return table.find(name) != nullptr ? table.text(name) : std::vector<std::string>(table.rows(), fallback);
-}
-
-std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const std::string& where) {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < spec.fidelities.size(); ++i) {
-        if (spec.fidelities[i].name == fidelity) {
-            return i;
-        }
-        names.push_back(spec.fidelities[i].name);
-    }
-    throw core::InputError("name", where + ": there is no fidelity '" + fidelity + "' in [design]", {},
-                           core::did_you_mean(fidelity, names));
 }
 
 std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const core::Table& table) {
@@ -134,6 +123,12 @@ Design Design::open(const Study& study) {
     design.spec_ = *study.design;
     check_responses(design.spec_);
     design.base_ = geometry::read_shape(design.spec_.shape);
+    const auto& varied = design.spec_.variables;
+    if (design.spec_.jet.any() && !design.base_.nozzle &&
+        std::none_of(varied.begin(), varied.end(), [](const auto& v) { return v.name.starts_with("nozzle."); })) {
+        throw core::InputError("missing", "the body has no nozzle for the jet of [design]",
+                               {design.spec_.shape.string(), {}, {}, {}}, "[nozzle] with diameter = \"5 mm\"");
+    }
     const fs::path plan = design.spec_.folder / "plan.csv", results = design.spec_.folder / "results.csv";
     const auto names = [](const core::Table& table) {
         std::vector<std::string> result;
@@ -155,9 +150,11 @@ Design Design::open(const Study& study) {
         unsettled += run.state == not_settled_state ? 1 : 0;
     }
     if (unsettled > 0) {
-        design.notes.push_back({core::Problem::Severity::warning,
-                                std::to_string(unsettled) + " runs have not settled: they are left out",
-                                {results.string(), {}, {}, {}}});
+        design.notes.push_back(
+            {core::Problem::Severity::warning,
+             core::counted(unsettled, "run") +
+                 (unsettled == 1 ? " has not settled: it is left out" : " have not settled: they are left out"),
+             {results.string(), {}, {}, {}}});
     }
     return design;
 }
@@ -183,7 +180,7 @@ std::size_t Design::make_plan(core::Progress& progress) {
         }
         try {
             // What is known without a run costs none.
-            const std::string fault = volume_fault(spec_, shape_at(spec_, base_, design.at));
+            const std::string fault = volume_fault(spec_, shape_at(design.at));
             if (!fault.empty()) {
                 design.state = one_field(fault);
             }
@@ -216,7 +213,7 @@ bool Design::write_shapes() {
     for (PlannedDesign& design : plan_) {
         const fs::path file = spec_.folder / "shapes" / (design.name + ".toml");
         try {
-            geometry::BodyShape shape = shape_at(spec_, base_, design.at);
+            geometry::BodyShape shape = shape_at(design.at);
             shape.name = design.name;
             const std::string text = geometry::write_shape(shape);
             if (!fs::exists(file) || core::read_file(file) != text) {
@@ -225,7 +222,7 @@ bool Design::write_shapes() {
             }
         } catch (const core::InputError& error) {
             refused = refused || design.state == "planned";
-            design.state = one_field(error.message());
+            design.state = one_field(error.message() + (error.hint().empty() ? "" : "; " + error.hint()));
         }
     }
     return refused;
@@ -336,105 +333,6 @@ core::Table Design::results_table(std::size_t first) const {
     }
     table.add_text("state", states);
     return table;
-}
-
-std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {
-    std::map<std::string, tables::Surrogate> result;
-    for (const std::string& q : spec_.quantities) {
-        std::vector<tables::SearchRun> runs;
-        std::map<std::string, std::vector<double>> stated;  // by fidelity
-        for (const DesignRun& run : runs_) {
-            if (run.usable() && run.sigmas.contains(q)) {
-                stated[run.fidelity].push_back(run.sigmas.at(q));
-            }
-        }
-        const auto usual = [&](const std::string& fidelity) {
-            std::vector<double>& sigmas = stated[fidelity];
-            std::sort(sigmas.begin(), sigmas.end());
-            return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
-        };
-        for (const DesignRun& run : runs_) {
-            const auto load = run.loads.find(q), sigma = run.sigmas.find(q);
-            if (run.usable() && load != run.loads.end()) {
-                runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second,
-                                sigma == run.sigmas.end() ? usual(run.fidelity) : sigma->second});
-            }
-        }
-        result.emplace(q,
-                       tables::Surrogate::fit(q, core::find_quantity(q)->unit, spec_.all_variables(), runs, progress));
-    }
-    return result;
-}
-
-tables::DesignSearch Design::search(std::map<std::string, tables::Surrogate> surrogates) const {
-    tables::SearchProblem problem;
-    problem.variables = spec_.variables;
-    problem.objectives = spec_.objectives;
-    problem.limits = spec_.limits;
-    problem.known_limits.push_back(
-        [spec = spec_, base = base_](std::span<const double> at) { return broken_by(spec, base, at); });
-    return {std::move(problem), std::move(surrogates)};
-}
-
-tables::DesignSearch::NextOptions Design::known() const {
-    tables::DesignSearch::NextOptions options;
-    options.seed = spec_.seed + runs_.size();
-    for (const FidelitySpec& fidelity : spec_.fidelities) {
-        options.level_costs.push_back(fidelity.cost);
-    }
-    std::map<std::vector<double>, bool> solved;
-    for (const DesignRun& run : runs_) {
-        const std::vector<double> at(run.at.begin(),
-                                     run.at.begin() + static_cast<std::ptrdiff_t>(spec_.variables.size()));
-        auto [entry, fresh] = solved.try_emplace(at, run.usable());
-        entry->second = entry->second && run.usable();
-    }
-    for (const auto& [at, good] : solved) {
-        (good ? options.solved : options.failed).push_back(at);
-    }
-    for (const PlannedDesign& design : plan_) {
-        const bool run = std::any_of(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
-            return r.design == design.name && r.fidelity == design.fidelity;
-        });
-        if (design.state == "planned" && !run) {
-            options.planned.emplace_back(design.at, level_of(spec_, design.fidelity, design.name));
-        }
-    }
-    return options;
-}
-
-std::optional<tables::TrustRegion> Design::trust_region(const tables::DesignSearch& search) const {
-    if (spec_.variables.size() <= tables::trust_region_from) {
-        return {};
-    }
-    tables::TrustRegion region;
-    double best = std::nan("");
-    for (const PlannedDesign& design : plan_) {
-        const bool run = std::any_of(runs_.begin(), runs_.end(),
-                                     [&](const DesignRun& r) { return r.design == design.name && r.usable(); });
-        const double value = run ? search.best_of({design.at}) : std::nan("");
-        // A thousandth of the best is no improvement (Eriksson et al. 2019).
-        const bool improved = std::isnan(best) ? !std::isnan(value) : value < best - 1e-3 * std::abs(best);
-        best = std::fmin(best, value);
-        if (design.why != "plan" && run) {
-            region.step(improved, spec_.variables.size());
-            region = region.collapsed() ? tables::TrustRegion{} : region;
-        }
-    }
-    return region;
-}
-
-tables::SobolIndices Design::sensitivity(const tables::Surrogate& surrogate) const {
-    const auto& variables = surrogate.variables();
-    return tables::sobol_indices(
-        [&](std::span<const double> u) {
-            std::vector<double> x;
-            for (std::size_t v = 0; v < variables.size(); ++v) {
-                x.push_back(variables[v].unscaled(u[v]));
-            }
-            return surrogate.at(x).value;
-        },
-        variables.size(), 1024, spec_.seed);
 }
 
 }  // namespace underbody::cases

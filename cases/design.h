@@ -77,6 +77,8 @@ public:
     /// The box that a search in more than tables::trust_region_from variables keeps to: how the designs that it chose
     /// did, one after the other as they stand in the plan. None with fewer variables.
     [[nodiscard]] std::optional<tables::TrustRegion> trust_region(const tables::DesignSearch& search) const;
+    /// The shape at a design. Throws core::InputError where there is none.
+    [[nodiscard]] geometry::BodyShape shape_at(const std::vector<double>& at) const;
     /// Indices of a quantity over the shape's variables and the conditions, of the surrogate's mean.
     [[nodiscard]] tables::SobolIndices sensitivity(const tables::Surrogate& surrogate) const;
 
@@ -97,19 +99,6 @@ private:
     DesignTable plan_file_, results_file_;
     bool rows_changed_ = false;  ///< results.csv has rows that say otherwise than runs_
 };
-
-/// Predicted against computed, each shape left out once: with bands.
-core::Figure left_out_figure(const tables::Surrogate& surrogate);
-core::Figure sensitivity_figure(const tables::Surrogate& surrogate, const tables::SobolIndices& indices);
-/// One variable at a time through `at`, with two-sigma bands.
-std::vector<core::Figure> one_at_a_time(const tables::Surrogate& surrogate, const std::vector<double>& at);
-/// The best valid value of the first objective by the order of the runs.
-core::Figure convergence_figure(const Design& design, const tables::DesignSearch& search);
-/// Two objectives against each other.
-core::Figure front_figure(const tables::DesignSearch& search, const std::vector<tables::Candidate>& front,
-                          const std::vector<tables::Candidate>& known);
-/// Where the plan lies over each pair of neighbouring variables.
-core::Figure coverage_figure(const Design& design, std::size_t x, std::size_t y);
 
 /// The report: plan, fits with their check, sensitivities, the best, the front. `renderer` may be empty: no pictures.
 std::string design_report(const Design& design, const FigureRenderer& renderer,

@@ -90,6 +90,7 @@ SweepSpec sweep_of(const DesignSpec& spec, const FidelitySpec& fidelity, const s
     sweep.gaps = spec.gaps;
     sweep.pitches = spec.pitches;
     sweep.speeds = spec.speeds;
+    sweep.jet = spec.jet;
     sweep.mesh = fidelity.mesh;
     sweep.kinematic_viscosity = spec.kinematic_viscosity;
     return sweep;

@@ -15,7 +15,6 @@
 
 namespace underbody::cases {
 
-using core::FileTable;
 using core::TomlTable;
 using tables::Objective;
 
@@ -99,6 +98,14 @@ FidelitySpec fidelity_from(const TomlTable& table) {
 tables::SearchVariable variable_from(const TomlTable& table) {
     tables::SearchVariable v;
     v.name = table.string("key");
+    for (const char* condition : {"gap", "pitch", "speed", "jet_flow", "jet_voltage"}) {
+        if (v.name == condition) {
+            throw core::InputError("name", v.name + " is a condition, not a number of the shape", table.place("key"),
+                                   v.name +
+                                       " = [...] in [design]: every design is computed at each, and surrogates know "
+                                       "what lies between");
+        }
+    }
     v.unit = geometry::parameter_unit(v.name, table.place("key"));
     if (v.unit.empty()) {
         throw core::InputError("name", "'" + v.name + "' of a shape is a choice, not a number with a range",
@@ -108,8 +115,11 @@ tables::SearchVariable variable_from(const TomlTable& table) {
     v.upper = table.quantity("to", v.unit);
     v.logarithmic = table.boolean_or("logarithmic", false);
     if (!(v.lower < v.upper)) {
-        throw core::InputError("range", table.path_of("from") + " is not below to: the range is empty",
-                               table.place("from"), "from = \"1 mm\", to = \"3 mm\"");
+        throw core::InputError("range",
+                               table.path_of("from") + " is " + geometry::shown_value(v.lower, v.unit, 6) +
+                                   ", not below to, " + geometry::shown_value(v.upper, v.unit, 6) +
+                                   ": the range is empty",
+                               table.place("from"), "the lower end as from, the upper one as to");
     }
     if (v.logarithmic && !(v.lower > 0)) {
         throw core::InputError("range", table.path_of("from") + " must be above zero on a logarithmic range",
@@ -129,6 +139,7 @@ void drop_the_only_values(tables::Response& r, const DesignSpec& spec) {
     only("gap", spec.gaps);
     only("pitch", spec.pitches);
     only("speed", spec.speeds);
+    only(spec.jet.quantity.c_str(), spec.jet.values);
 }
 
 /// A response with the conditions of `at`; conditions that have one value need not be said.
@@ -259,6 +270,7 @@ std::vector<tables::SearchVariable> DesignSpec::all_variables() const {
     add("gap", "m", gaps, true);
     add("pitch", "rad", pitches, false);
     add("speed", "m/s", speeds, true);
+    add(jet.quantity.c_str(), jet.unit().c_str(), jet.values, false);
     return all;
 }
 
@@ -277,6 +289,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
     spec.gaps = one_or_more(design, "gap", "m", 5e-3);
     spec.pitches = one_or_more(design, "pitch", "rad", 0);
     spec.speeds = one_or_more(design, "speed", "m/s", 0.5);
+    spec.jet = read_jet_axis(design);
     spec.kinematic_viscosity = design.quantity_or("kinematic_viscosity", "m^2/s", spec.kinematic_viscosity);
     if (!(spec.kinematic_viscosity > 0)) {
         throw core::InputError("range", design.path_of("kinematic_viscosity") + " must be above zero",
@@ -312,6 +325,7 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
             throw core::InputError("name", table.path_of("name") + ": there are two fidelities " + f.name,
                                    table.place("name"));
         }
+        spec.jet.check(f.mesh, design.place(spec.jet.quantity));
         spec.fidelities.push_back(f);
     }
     if (spec.fidelities.empty()) {
@@ -352,65 +366,16 @@ void check_responses(const DesignSpec& spec) {
     }
 }
 
-std::vector<FileTable> design_tables() {
-    const core::FileKey at{"*", "1", "gap = \"5 mm\"", "", "a condition that takes several values in [design]"};
-    const auto response = [](std::vector<core::FileKey> more) {
-        std::vector<core::FileKey> keys = {
-            {"quantity", "text", "\"lift_force\"", "", "one of design.quantities"},
-            {"slope_along", "text", "\"pitch\"", "none", "its slope along this condition, not its value"},
-            {"half_width", "rad or m or m/s", "\"1 deg\"", "1 deg, 1 mm, 1 mm/s",
-             "the slope is the difference over twice this"},
-            {"name", "text", "\"lift\"", "made of the others", "what it is called in tables"}};
-        keys.insert(keys.end(), more.begin(), more.end());
-        return keys;
-    };
-    std::vector<FileTable> tables = {
-        {"design",
-         "shapes to be tried: a plan, surrogates of what was computed, what to compute next, the best",
-         {{"shape", "file", "\"shapes/evie.toml\"", "", "SHAPE.toml that is varied"},
-          {"folder", "text", "\"design\"", "design", "of plan, shapes, runs and results, relative to this file"},
-          {"plan", "sobol | latin_hypercube", "\"sobol\"", "sobol", "how the first designs fill the ranges"},
-          {"points", "whole number", "24", "24", "designs of the first plan"},
-          {"seed", "whole number", "1", "1", "of the plan and the searches"},
-          {"gap", "m or list of m", "[\"3 mm\", \"5 mm\", \"10 mm\"]", "5 mm", "every design is computed at these"},
-          {"pitch", "rad or list of rad", "[\"-1 deg\", \"1 deg\"]", "0", "and at these, positive nose up"},
-          {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "0.5 m/s", "and at these"},
-          {"kinematic_viscosity", "m^2/s", "\"1.0e-6 m^2/s\"",
-           core::format_number(DesignSpec().kinematic_viscosity) + " m^2/s", "of the water"},
-          {"quantities", "list of texts", "[\"lift_force\", \"pitch_moment\"]", "lift_force, drag_force, pitch_moment",
-           "loads that are learned"}}},
-        {"design.vary[]",
-         "a number of the shape and its range",
-         {{"key", "text", "\"protrusion.height\"", "", "as in SHAPE.toml"},
-          {"from", "unit of the key", "\"1 mm\"", "", "lower end"},
-          {"to", "unit of the key", "\"3 mm\"", "", "upper end"},
-          {"logarithmic", "true or false", "false", "false", "ratios count, not differences"}}},
-        {"design.tie[]",
-         "a number of the shape that follows another one",
-         {{"key", "text", "\"protrusion.length\"", "", "the one that follows"},
-          {"of", "text", "\"protrusion.height\"", "", "the one it follows"},
-          {"factor", "1", "5", "1", "times this"},
-          {"offset", "unit of the key", "\"0 mm\"", "0", "plus this"}}},
-        {"design.fidelity[]",
-         "a mesh; the cheapest first, the last is what counts",
-         {{"name", "text", "\"coarse\"", "", "its folder below runs"},
-          {"cost", "s", "\"120 s\"", "1 s", "core-seconds of a case, to weigh what pays"}}},
-        {"design.objective[]", "what is wanted; several make a front",
-         response({{"sense", "minimise | maximise", "\"maximise\"", "", "which way"},
-                   {"target", "unit of the quantity", "\"0.3 N\"", "none", "the value that is wanted", "sense"}})},
-        {"design.objective[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"},
-        {"design.limit[]", "what must hold of a quantity",
-         response({{"at_least", "unit of the quantity", "\"0.1 N\"", "", "lower limit"},
-                   {"at_most", "unit of the quantity", "\"0.5 N\"", "none", "upper limit", "at_least"}})},
-        {"design.limit[].at", "the conditions it is taken at", {at}, false, "at = { gap = \"5 mm\" }"},
-        {"design.volume",
-         "what must hold of the body's volume: known without a run",
-         {{"at_least", "m^3", "\"1 L\"", "0", "lower limit"}, {"at_most", "m^3", "\"4 L\"", "none", "upper limit"}}}};
-    const auto of_mesh = case_mesh_keys("the name, where it is one of these, else medium");
-    const auto fidelity = std::find_if(tables.begin(), tables.end(),
-                                       [](const FileTable& table) { return table.path == "design.fidelity[]"; });
-    fidelity->keys.insert(fidelity->keys.end(), of_mesh.begin(), of_mesh.end());
-    return tables;
+std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const std::string& where) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < spec.fidelities.size(); ++i) {
+        if (spec.fidelities[i].name == fidelity) {
+            return i;
+        }
+        names.push_back(spec.fidelities[i].name);
+    }
+    throw core::InputError("name", where + ": there is no fidelity '" + fidelity + "' in [design]", {},
+                           core::did_you_mean(fidelity, names));
 }
 
 geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {

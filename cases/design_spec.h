@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cases/case_mesh.h"
+#include "cases/jet_axis.h"
 #include "core/file_format.h"
 #include "core/toml.h"
 #include "geometry/body/variants.h"
@@ -29,6 +30,7 @@ struct DesignSpec {
     std::size_t points = 24;
     std::uint64_t seed = 1;
     std::vector<double> gaps, pitches, speeds;  ///< every design is computed at all of them; m, rad, m/s
+    JetAxis jet;                                ///< and of its nozzle's jet
     double kinematic_viscosity = 1e-6;          ///< of the water, m^2/s
     std::vector<std::string> quantities;
     std::vector<tables::SearchVariable> variables;  ///< of the shape
@@ -51,6 +53,9 @@ DesignSpec read_design(const core::TomlTable& design, const std::filesystem::pat
 void check_responses(const DesignSpec& spec);
 /// The tables of [design], for the format of study.toml.
 std::vector<core::FileTable> design_tables();
+
+/// Which of the fidelities it is. Throws core::InputError with the nearest name; `where` begins the message.
+std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const std::string& where);
 
 /// The shape at a design, its ties drawn. Throws core::InputError where there is no such shape.
 geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at);

@@ -494,16 +494,11 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     sweep.gaps = list("gap", "m", std::nullopt);
     sweep.pitches = list("pitch", "rad", 0.0);
     sweep.speeds = list("speed", "m/s", study.reference.number("speed"));
-    if (table.has("jet_flow")) {
-        sweep.jet_flows = list("jet_flow", "m^3/s", std::nullopt);
-    }
+    sweep.jet = read_jet_axis(table);
     sweep.conditions = read_where(table, "conditions");
     sweep.kinematic_viscosity = table.quantity_or("kinematic_viscosity", "m^2/s", sweep.kinematic_viscosity);
     sweep.mesh = read_case_mesh(table);
-    if (!sweep.jet_flows.empty() && sweep.mesh.mesher == "snappy") {
-        throw core::InputError("choice", "a jet needs a mesh of blocks", table.place("jet_flow"),
-                               "mesher = \"blocks\", without cell, surface_level and layers");
-    }
+    sweep.jet.check(sweep.mesh, table.place(sweep.jet.quantity));
     sweep.slurm = read_slurm(table.table_or_empty("slurm"));
     if (sweep.bodies.empty() || sweep.gaps.empty() || sweep.pitches.empty() || sweep.speeds.empty()) {
         throw core::InputError("missing", "a sweep needs a [[body]], a gap and a speed", table.place(),

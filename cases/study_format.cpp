@@ -123,8 +123,6 @@ std::vector<FileTable> sweep() {
           {"bodies", "list of texts", "[\"ellipse\"]", "all [[body]]", "names of [[body]]"},
           {"pitch", "rad or list of rad", "[\"0 deg\"]", "0", "pitch angles, positive nose up"},
           {"speed", "m/s or list of m/s", "\"0.5 m/s\"", "reference.speed", "speeds"},
-          {"jet_flow", "m^3/s or list of m^3/s", "[\"0 mL/s\", \"50 mL/s\"]", "no jet",
-           "through the nozzle of the body; blocks only"},
           {"folder", "text", "\"runs\"", "runs", "folder of the cases, relative to this file"},
           {"kinematic_viscosity", "m^2/s", "\"1.0e-6 m^2/s\"",
            core::format_number(usual.kinematic_viscosity) + " m^2/s", "of the water"}}},
@@ -142,7 +140,8 @@ std::vector<FileTable> sweep() {
           {"run_study", "true or false", "true", "false", "a job more that runs the study when the arrays have ended"},
           {"options", "list of texts", "[\"--nice=100\"]", "none", "further options of sbatch"}}},
         conditions("sweep.conditions", "further conditions of these cases", "conditions = { mesh = \"coarse\" }")};
-    const auto of_mesh = case_mesh_keys(usual.mesh.density);
+    const auto of_jet = jet_axis_keys(), of_mesh = case_mesh_keys(usual.mesh.density);
+    tables.front().keys.insert(tables.front().keys.end(), of_jet.begin(), of_jet.end());
     tables.front().keys.insert(tables.front().keys.end(), of_mesh.begin(), of_mesh.end());
     return tables;
 }

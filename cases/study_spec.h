@@ -9,6 +9,7 @@
 
 #include "cases/case_mesh.h"
 #include "cases/conditions.h"
+#include "cases/jet_axis.h"
 
 namespace underbody::cases {
 
@@ -119,13 +120,13 @@ struct SlurmSpec {
 
 /// [sweep]: cases to be made by CFD, every body at every gap, pitch and speed.
 struct SweepSpec {
-    std::string folder;             ///< of the cases, relative to the study
-    std::vector<BodySpec> bodies;   ///< those of [[body]] that are named, or all
-    std::vector<double> gaps;       ///< m
-    std::vector<double> pitches;    ///< rad
-    std::vector<double> speeds;     ///< m/s
-    std::vector<double> jet_flows;  ///< m^3/s through the nozzle; empty: no jet
-    Conditions conditions;          ///< further conditions of these cases (mesh = "coarse")
+    std::string folder;            ///< of the cases, relative to the study
+    std::vector<BodySpec> bodies;  ///< those of [[body]] that are named, or all
+    std::vector<double> gaps;      ///< m
+    std::vector<double> pitches;   ///< rad
+    std::vector<double> speeds;    ///< m/s
+    JetAxis jet;                   ///< through the nozzle
+    Conditions conditions;         ///< further conditions of these cases (mesh = "coarse")
     double kinematic_viscosity = 1e-6;
     CaseMesh mesh;
     SlurmSpec slurm;

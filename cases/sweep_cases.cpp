@@ -65,7 +65,7 @@ geometry::FlowOptions flow_of(const Study& study, const Conditions& conditions) 
     flow.density = study.reference.number("density").value_or(flow.density);
     flow.kinematic_viscosity = spec.kinematic_viscosity;
     flow.half = !study.symmetry.empty();
-    flow.jet_flow = conditions.number("jet_flow").value_or(0);
+    flow.jet_flow = spec.jet.flow(conditions);
     spec.mesh.put_into(flow);
     return flow;
 }
@@ -113,9 +113,8 @@ namespace {
 std::vector<SweepCase> asked_for(const Study& study) {
     const SweepSpec& spec = spec_of(study);
     std::vector<SweepCase> cases;
-    const std::vector<double> no_jet{-1};
     for (const auto& body : spec.bodies) {
-        for (const double jet : spec.jet_flows.empty() ? no_jet : spec.jet_flows) {
+        for (std::size_t jet = 0; jet < spec.jet.count(); ++jet) {
             for (const double speed : spec.speeds) {
                 for (const double pitch : spec.pitches) {
                     for (const double gap : spec.gaps) {
@@ -127,9 +126,9 @@ std::vector<SweepCase> asked_for(const Study& study) {
                         for (const auto& [name, value] : {std::pair{"gap", gap}, {"pitch", pitch}, {"speed", speed}}) {
                             one.conditions.numbers.emplace_back(name, value);
                         }
-                        if (jet >= 0) {
-                            one.name += "-q" + core::format_number(1e6 * jet, 6);
-                            one.conditions.numbers.emplace_back("jet_flow", jet);
+                        if (spec.jet.any()) {
+                            one.name += spec.jet.ending(spec.jet.values[jet]);
+                            one.conditions.numbers.emplace_back(spec.jet.quantity, spec.jet.values[jet]);
                         }
                         one.folder = study.folder() / spec.folder / one.name;
                         cases.push_back(std::move(one));

@@ -25,7 +25,9 @@ std::string parameter_unit(const std::string& key, const core::Place& place) {
     throw core::InputError("name", "a shape has no parameter '" + key + "'", place, core::did_you_mean(key, known));
 }
 
-std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
+std::string shown_unit(const std::string& unit) {
+    return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit == "m^3/s" ? "mL/s" : unit;
+}
 
 std::string shown_value(double value, const std::string& unit, int digits) {
     const std::string shown = shown_unit(unit);

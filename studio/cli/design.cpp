@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cases/design_figures.h"
 #include "core/counted.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -296,11 +297,20 @@ int sensitivity(Shell& shell, const Arguments& a) {
     for (const auto& [name, surrogate] : design.surrogates(shell.progress())) {
         const tables::SobolIndices indices = design.sensitivity(surrogate);
         json variables = json::array();
+        const std::vector<double> middle = cases::middle_of(surrogate.variables());
         text += name + " (share of the variance: alone, with interactions)\n";
         for (std::size_t v = 0; v < surrogate.variables().size(); ++v) {
+            json at = json::array(), value = json::array(), sigma = json::array();
+            for (const cases::OneAtATime& point : cases::along(surrogate, middle, v, 11)) {
+                at.push_back(point.at);
+                value.push_back(point.value);
+                sigma.push_back(point.sigma);
+            }
             variables.push_back({{"name", surrogate.variables()[v].name},
                                  {"first", interval(indices.first[v])},
-                                 {"total", interval(indices.total[v])}});
+                                 {"total", interval(indices.total[v])},
+                                 {"held_at", middle[v]},
+                                 {"one_at_a_time", {{"at", at}, {"value", value}, {"sigma", sigma}}}});
             text += "  " + surrogate.variables()[v].name + ": " + core::format_number(indices.first[v].value, 2) +
                     ", " + core::format_number(indices.total[v].value, 2) + " (" +
                     core::format_number(indices.total[v].lower, 2) + " to " +

@@ -421,7 +421,9 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
     };
     EXPECT_THAT(refused("protrusion.height\"\nfrom", "protrusion.hight\"\nfrom"),
                 testing::HasSubstr("protrusion.height"));
-    EXPECT_THAT(refused("to = \"3 mm\"", "to = \"0.1 mm\""), testing::HasSubstr("the range is empty"));
+    EXPECT_THAT(refused("to = \"3 mm\"", "to = \"0.1 mm\""),
+                testing::HasSubstr("from is 0.5 mm, not below to, 0.1 mm: the range is empty"));
+    EXPECT_THAT(refused("key = \"body.base_cut\"", "key = \"pitch\""), testing::HasSubstr("pitch = [...] in [design]"));
     EXPECT_THAT(refused("quantity = \"lift_force\"", "quantity = \"lift_forc\""), testing::HasSubstr("lift_force"));
     EXPECT_THAT(refused("at = { gap = \"5 mm\", pitch = 0 }", "at = { pitch = 0 }"), testing::HasSubstr("gap"));
     EXPECT_THAT(refused("slope_along = \"pitch\"", "slope_along = \"speed\""), testing::HasSubstr("speed"));

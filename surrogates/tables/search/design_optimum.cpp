@@ -270,6 +270,16 @@ std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64
     }
     keep_front();
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.f.front() < b.f.front(); });
+    // Several starts end at one design.
+    const auto same = [](const Point& a, const Point& b) {
+        return std::equal(a.u.begin(), a.u.end(), b.u.begin(),
+                          [](double u, double v) { return std::abs(u - v) < 1e-3; });
+    };
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto after = points.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+        points.erase(std::remove_if(after, points.end(), [&, i](const Point& p) { return same(points[i], p); }),
+                     points.end());
+    }
     std::vector<Candidate> result;
     for (std::size_t i = 0; i < std::min(count, points.size()); ++i) {
         const std::size_t at = points.size() <= count || count < 2 ? i : i * (points.size() - 1) / (count - 1);

@@ -1,0 +1,123 @@
+// What a design search makes of its runs: surrogates, the search on them, what is known for it.
+#include <algorithm>
+#include <cmath>
+
+#include "cases/design.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "core/units.h"
+
+namespace underbody::cases {
+
+using tables::SearchVariable;
+
+std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {
+    if (std::none_of(runs_.begin(), runs_.end(), [](const DesignRun& run) { return run.usable(); })) {
+        throw core::InputError("missing",
+                               runs_.empty() ? "nothing has been computed yet"
+                                             : "of " + std::to_string(runs_.size()) + " runs none is solved",
+                               {(spec_.folder / "results.csv").string(), {}, {}, {}},
+                               "'underbody design plan' and 'design run', or rows of another solver; 'state' says what "
+                               "failed");
+    }
+    std::map<std::string, tables::Surrogate> result;
+    for (const std::string& q : spec_.quantities) {
+        std::vector<tables::SearchRun> runs;
+        std::map<std::string, std::vector<double>> stated;  // by fidelity
+        for (const DesignRun& run : runs_) {
+            if (run.usable() && run.sigmas.contains(q)) {
+                stated[run.fidelity].push_back(run.sigmas.at(q));
+            }
+        }
+        const auto usual = [&](const std::string& fidelity) {
+            std::vector<double>& sigmas = stated[fidelity];
+            std::sort(sigmas.begin(), sigmas.end());
+            return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
+        };
+        for (const DesignRun& run : runs_) {
+            const auto load = run.loads.find(q), sigma = run.sigmas.find(q);
+            if (run.usable() && load != run.loads.end()) {
+                runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second,
+                                sigma == run.sigmas.end() ? usual(run.fidelity) : sigma->second});
+            }
+        }
+        result.emplace(q,
+                       tables::Surrogate::fit(q, core::find_quantity(q)->unit, spec_.all_variables(), runs, progress));
+    }
+    return result;
+}
+
+tables::DesignSearch Design::search(std::map<std::string, tables::Surrogate> surrogates) const {
+    tables::SearchProblem problem;
+    problem.variables = spec_.variables;
+    problem.objectives = spec_.objectives;
+    problem.limits = spec_.limits;
+    problem.known_limits.push_back(
+        [spec = spec_, base = base_](std::span<const double> at) { return broken_by(spec, base, at); });
+    return {std::move(problem), std::move(surrogates)};
+}
+
+tables::DesignSearch::NextOptions Design::known() const {
+    tables::DesignSearch::NextOptions options;
+    options.seed = spec_.seed + runs_.size();
+    for (const FidelitySpec& fidelity : spec_.fidelities) {
+        options.level_costs.push_back(fidelity.cost);
+    }
+    std::map<std::vector<double>, bool> solved;
+    for (const DesignRun& run : runs_) {
+        const std::vector<double> at(run.at.begin(),
+                                     run.at.begin() + static_cast<std::ptrdiff_t>(spec_.variables.size()));
+        auto [entry, fresh] = solved.try_emplace(at, run.usable());
+        entry->second = entry->second && run.usable();
+    }
+    for (const auto& [at, good] : solved) {
+        (good ? options.solved : options.failed).push_back(at);
+    }
+    for (const PlannedDesign& design : plan_) {
+        const bool run = std::any_of(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
+            return r.design == design.name && r.fidelity == design.fidelity;
+        });
+        if (design.state == "planned" && !run) {
+            options.planned.emplace_back(design.at, level_of(spec_, design.fidelity, design.name));
+        }
+    }
+    return options;
+}
+
+std::optional<tables::TrustRegion> Design::trust_region(const tables::DesignSearch& search) const {
+    if (spec_.variables.size() <= tables::trust_region_from) {
+        return {};
+    }
+    tables::TrustRegion region;
+    double best = std::nan("");
+    for (const PlannedDesign& design : plan_) {
+        const bool run = std::any_of(runs_.begin(), runs_.end(),
+                                     [&](const DesignRun& r) { return r.design == design.name && r.usable(); });
+        const double value = run ? search.best_of({design.at}) : std::nan("");
+        // A thousandth of the best is no improvement (Eriksson et al. 2019).
+        const bool improved = std::isnan(best) ? !std::isnan(value) : value < best - 1e-3 * std::abs(best);
+        best = std::fmin(best, value);
+        if (design.why != "plan" && run) {
+            region.step(improved, spec_.variables.size());
+            region = region.collapsed() ? tables::TrustRegion{} : region;
+        }
+    }
+    return region;
+}
+
+geometry::BodyShape Design::shape_at(const std::vector<double>& at) const { return cases::shape_at(spec_, base_, at); }
+
+tables::SobolIndices Design::sensitivity(const tables::Surrogate& surrogate) const {
+    const auto& variables = surrogate.variables();
+    return tables::sobol_indices(
+        [&](std::span<const double> u) {
+            std::vector<double> x;
+            for (std::size_t v = 0; v < variables.size(); ++v) {
+                x.push_back(variables[v].unscaled(u[v]));
+            }
+            return surrogate.at(x).value;
+        },
+        variables.size(), 1024, spec_.seed);
+}
+
+}  // namespace underbody::cases
