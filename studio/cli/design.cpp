@@ -120,7 +120,7 @@ int plan(Shell& shell, const Arguments& a) {
                           {"refused", refused.size()},
                           {"refused_designs", refused}});
     }
-    shell.print(file + ": " + std::to_string(design.plan().size()) + " designs, " + std::to_string(fresh) +
+    shell.print(file + ": " + core::counted(design.plan().size(), "design") + ", " + std::to_string(fresh) +
                 " of them new" +
                 (refused.empty() ? ""
                  : none          ? "; none of them can be:"
@@ -201,7 +201,7 @@ int next(Shell& shell, const Arguments& a) {
                 core::format_number(100 * c.chance_solved, 3) + " %\n" + text_of(search, c);
     }
     if (designs.size() < a.count) {
-        text += (designs.empty() ? std::string("No design") : "Only " + std::to_string(designs.size()) + " designs") +
+        text += (designs.empty() ? std::string("No design") : "Only " + core::counted(designs.size(), "design")) +
                 " that the plan has not yet meet the limits that are known without a run.\n";
     }
     if (a.add && !designs.empty()) {
