@@ -269,7 +269,7 @@ void Design::note_unknown_sigmas() {
         }
         if (without > 0) {
             notes.push_back({core::Problem::Severity::note,
-                             q + ": of " + std::to_string(without) + " runs the standard deviation is unknown: " +
+                             q + ": of " + core::counted(without, "run") + " the standard deviation is unknown: " +
                                  (with > 0 ? "learned with the median of the others of their fidelity"
                                            : "their scatter is estimated with the surrogate"),
                              {(spec_.folder / "results.csv").string(), {}, {}, {}}});

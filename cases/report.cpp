@@ -155,8 +155,8 @@ private:
             for (const auto& name : names) {
                 list += (list.empty() ? "" : ", ") + name;
             }
-            page_.warning(std::to_string(names.size()) + " of " + std::to_string(engine_.results.loads.rows()) +
-                          " solutions have not settled: " + list);
+            page_.warning(core::counted_of(names.size(), engine_.results.loads.rows(), "solution", "has", "have") +
+                          " not settled: " + list);
         }
     }
 

@@ -35,14 +35,14 @@ const std::string* StudyResults::picture(const std::string& key) const {
     return nullptr;
 }
 
-std::string StudyResults::loads_document(const CaseLoads& loads) const {
-    return store != nullptr && loads.id != 0 ? store->value(loads.id).value_or("") : "";
+std::string StudyResults::loads_document(const CaseLoads& one) const {
+    return store != nullptr && one.id != 0 ? store->value(one.id).value_or("") : "";
 }
 
 core::Problems StudyResults::gathered_warnings(bool each) const {
     core::BatchProblems all;
-    for (const auto& loads : case_loads) {
-        all.add(loads.file, loads.warnings);
+    for (const auto& one : case_loads) {
+        all.add(one.file, one.warnings);
     }
     return all.gathered(each);
 }

@@ -144,9 +144,10 @@ std::string submitted(const fs::path& script, std::vector<std::string> arguments
     arguments.push_back(fs::absolute(script).string());
     const auto answer = ask("sbatch", arguments, fs::absolute(script).parent_path(), progress);
     if (!answer || answer->code != 0) {
-        throw core::SystemError("slurm", "sbatch refused the job: " + (answer ? answer->text : ""),
-                                {script.string(), {}, {}, {}},
-                                before == 0 ? "" : std::to_string(before) + " arrays before it were submitted");
+        throw core::SystemError(
+            "slurm", "sbatch refused the job: " + (answer ? answer->text : ""), {script.string(), {}, {}, {}},
+            before == 0 ? ""
+                        : core::counted(before, "array before it was submitted", "arrays before it were submitted"));
     }
     return answer->text.substr(0, answer->text.find_first_of(";\n"));
 }

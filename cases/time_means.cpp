@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/loads/transient.h"
 
@@ -98,8 +99,10 @@ std::vector<CaseLoads> with_means_in_time(const Study& study, std::vector<CaseLo
             run.front()->warnings.push_back(
                 {core::Problem::Severity::warning,
                  run.size() == 1 ? "this is a single instant: there are no other times to make a mean of"
-                                 : "no mean in time: " + std::to_string(run.size() - static_cast<std::size_t>(known)) +
-                                       " of the " + std::to_string(run.size()) + " times have no loads",
+                                 : "no mean in time: " +
+                                       core::counted_of(run.size() - static_cast<std::size_t>(known), run.size(),
+                                                        "time", "has", "have") +
+                                       " no loads",
                  {run.front()->file, {}, {}, {}}});
         }
     }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core/counted.h"
 #include "core/text.h"
 
 namespace underbody::geometry {
@@ -175,10 +176,12 @@ std::string fault_of(const MeshQuality& q) {
                               core::format_number(1000 * q.where.y, 4) + ", " +
                               core::format_number(1000 * q.where.z, 4) + ") mm";
     if (q.negative_volumes > 0) {
-        return std::to_string(q.negative_volumes) + " cells are turned inside out," + place;
+        return core::counted(q.negative_volumes, "cell is", "cells are") + " turned inside out," + place;
     }
     if (q.inverted_faces > 0) {
-        return std::to_string(q.inverted_faces) + " faces are turned against their cells," + place;
+        return core::counted(q.inverted_faces, "face is turned against its cells",
+                             "faces are turned against their cells") +
+               "," + place;
     }
     if (q.largest_non_orthogonality > largest_allowed_non_orthogonality) {
         return "a face stands " + core::format_number(q.largest_non_orthogonality / degree, 3) +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/body/exact_body.h"
@@ -229,7 +230,7 @@ void require(const Certificate& certificate, const std::string& name) {
         "surface",
         name + " is no sound surface: " + fault.what + " at (" + mm(fault.where.x) + ", " + mm(fault.where.y) + ", " +
             mm(fault.where.z) + ") mm" +
-            (certificate.faults.size() > 1 ? " and " + std::to_string(certificate.faults.size() - 1) + " faults more"
+            (certificate.faults.size() > 1 ? " and " + core::counted(certificate.faults.size() - 1, "fault") + " more"
                                            : ""),
         {}, "repair the surface there: a mesher would fail at the same place");
 }

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/field/connected_components.h"
 #include "postproc/importers/mesh/variable_reading.h"
@@ -336,10 +337,11 @@ private:
             for (const std::size_t other : doubled.others) {
                 others.push_back(parts_[other].name);
             }
-            const std::string faces = (doubled.whole ? "all " : "") + std::to_string(doubled.faces) +
-                                      " faces of zone '" + name + "' stand in " + quoted(others) + " too";
+            const std::string faces = (doubled.whole && doubled.faces != 1 ? "all " : "") +
+                                      core::counted(doubled.faces, "face") + " of zone '" + name +
+                                      (doubled.faces == 1 ? "' stands in " : "' stand in ") + quoted(others) + " too";
             if (!options_.zones.empty()) {
-                warn(faces + ": what is on them counts twice");
+                warn(faces + (doubled.faces == 1 ? ": what is on it counts twice" : ": what is on them counts twice"));
             } else if (doubled.whole) {
                 away[doubled.zone] = true;
                 result_.left_out.push_back(

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/field/vector_math.h"
@@ -233,12 +234,12 @@ std::vector<LoadsCase> mesh_studies(const std::vector<LoadsCase>& cases, const s
     const auto alone = std::count_if(groups.begin(), groups.end(), [](const Group& g) { return g.cases.size() == 1; });
     if (alone > 0 && static_cast<std::size_t>(alone) < groups.size()) {
         const auto one = std::find_if(groups.begin(), groups.end(), [](const Group& g) { return g.cases.size() == 1; });
-        notes.push_back(
-            {core::Problem::Severity::warning,
-             std::to_string(alone) + " of " + std::to_string(groups.size()) +
-                 " cases have one mesh alone: their errors are without that of the mesh, and a table made of "
-                 "all takes them for far more exact than the others",
-             {one->cases.front()->file, {}, {}, {}}});
+        notes.push_back({core::Problem::Severity::warning,
+                         core::counted_of(alone, groups.size(), "case", "has", "have") +
+                             " one mesh alone: " + (alone == 1 ? "its error is" : "their errors are") +
+                             " without that of the mesh, and a table made of all takes " +
+                             (alone == 1 ? "it" : "them") + " for far more exact than the others",
+                         {one->cases.front()->file, {}, {}, {}}});
     }
     std::vector<LoadsCase> result;
     for (const auto& group : groups) {

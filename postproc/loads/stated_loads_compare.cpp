@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/field/vector_math.h"
 #include "postproc/loads/deviation.h"
@@ -127,8 +128,8 @@ public:
         }
         if (load.later > 0) {
             once("later", load.file, core::Problem::Severity::note,
-                 "the field is of " + shown(*load.time) + ": " + std::to_string(load.later) +
-                     " later rows are not of it",
+                 "the field is of " + shown(*load.time) + ": " +
+                     core::counted(load.later, "later row is", "later rows are") + " not of it",
                  load.file);
         }
     }

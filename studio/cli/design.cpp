@@ -202,7 +202,8 @@ int next(Shell& shell, const Arguments& a) {
     }
     if (designs.size() < a.count) {
         text += (designs.empty() ? std::string("No design") : "Only " + core::counted(designs.size(), "design")) +
-                " that the plan has not yet meet the limits that are known without a run.\n";
+                (designs.size() > 1 ? " that the plan has not yet meet" : " that the plan has not yet meets") +
+                " the limits that are known without a run.\n";
     }
     if (a.add && !designs.empty()) {
         design.add(designs, a.learn ? "largest drop of the error" : "expected improvement");
@@ -258,10 +259,10 @@ int optimise(Shell& shell, const Arguments& a) {
     const auto front = a.front > 0 ? search.pareto_front(a.front, design.spec().seed, shell.progress())
                                    : std::vector<tables::Candidate>{};
     json list = json::array();
-    std::string text =
-        best ? "Best by the surrogates, with every limit met by " + core::format_number(a.sigmas, 3) +
-                   " standard deviations. It is a prediction: compute it.\n" + text_of(search, *best)
-             : "No design meets every limit by " + core::format_number(a.sigmas, 3) + " standard deviations.\n";
+    const std::string margin = core::counted_text(core::format_number(a.sigmas, 3), "standard deviation");
+    std::string text = best ? "Best by the surrogates, with every limit met by " + margin +
+                                  ". It is a prediction: compute it.\n" + text_of(search, *best)
+                            : "No design meets every limit by " + margin + ".\n";
     json excluded = json::array();
     if (!best) {
         text += what_excludes(search, surrogates, a, design.spec().seed, shell, excluded);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cases/surroundings.h"
+#include "core/counted.h"
 #include "core/text.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
@@ -51,7 +52,7 @@ int run_doctor(Shell& shell, const std::vector<std::string>& needed) {
     if (shell.json) {
         shell.print_json({{"version", version()}, {"machine", machine}, {"parts", all}});
     }
-    shell.print("underbody " + version() + " on " + std::to_string(machine["cores"].get<int>()) + " cores, " +
+    shell.print("underbody " + version() + " on " + core::counted(machine["cores"].get<int>(), "core") + ", " +
                 gigabytes(machine["memory"]) + " of memory, " + gigabytes(machine["free_disk"]) + " free here");
     for (const auto& one : all) {
         shell.print(line_of(one));

@@ -180,7 +180,7 @@ void print(Shell& shell, const dynamics::LogSummary& summary) {
     print_columns(shell, messages);
     print_columns(shell, fields);
     for (const auto& unread : summary.end.unread) {
-        shell.print("not read: " + std::to_string(unread.count) + " messages " + core::as_utf8(unread.name) +
+        shell.print("not read: " + core::counted(unread.count, "message") + " " + core::as_utf8(unread.name) +
                     (unread.type.empty() ? "" : " (" + core::as_utf8(unread.type) + ")") + ": " +
                     core::as_utf8(unread.reason));
     }

@@ -257,7 +257,7 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
     if (!comparisons.empty()) {
         const auto worst = std::max_element(comparisons.begin(), comparisons.end(),
                                             [](const auto& a, const auto& b) { return a.of_force < b.of_force; });
-        shell.print("  " + std::to_string(comparisons.size()) + " numbers compared, furthest: " + worst->quantity +
+        shell.print("  " + core::counted(comparisons.size(), "number") + " compared, furthest: " + worst->quantity +
                     ", " + of_force(*worst));
     }
 }

@@ -60,8 +60,8 @@ int run_predict(const PredictArguments& a, Shell& shell) {
                     core::format_number(channel.noise, 3) + " " + channel.unit;
         }
         if (prediction.diverged > 0) {
-            text += "; " + std::to_string(prediction.diverged) + " of " + std::to_string(prediction.windows) +
-                    " windows run away: the model is wrong there, the figure does not say by how much";
+            text += "; " + core::counted_of(prediction.diverged, prediction.windows, "window", "runs", "run") +
+                    " away: the model is wrong there, the figure does not say by how much";
         }
         text += "\n";
     }

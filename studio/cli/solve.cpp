@@ -92,9 +92,9 @@ int solve(Shell& shell, const std::string& folder, bool again) {
                           {"forces", forces}});
         return done;
     }
-    shell.print(folder +
-                (before ? ": solved before, nothing was run (--again runs it)"
-                        : ": solved in " + seconds(needed) + ", " + std::to_string(state.iteration) + " iterations"));
+    shell.print(folder + (before
+                              ? ": solved before, nothing was run (--again runs it)"
+                              : ": solved in " + seconds(needed) + ", " + core::counted(state.iteration, "iteration")));
     if (loads.iterations > 0) {
         shell.print(std::string(loads.settled ? "settled: " : "not settled: ") + loads.text);
     }

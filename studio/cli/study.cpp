@@ -112,14 +112,15 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
     show_notes(shell, study);
     print_warnings(shell, results);
     if (const auto names = tables::not_settled(results.loads); !names.empty()) {
-        shell.print(std::to_string(names.size()) + " of " + std::to_string(results.loads.rows()) +
-                    " solutions have not settled, the first '" + names.front() + "'");
+        shell.print(core::counted_of(names.size(), results.loads.rows(), "solution", "has", "have") + " not settled" +
+                    (names.size() == 1 ? ", '" : ", the first '") + names.front() + "'");
     }
     for (const auto& check : results.verifications) {
         if (check.failed > 0) {
-            shell.print("check '" + check.name + "': " + std::to_string(check.failed) + " of " +
-                        std::to_string(check.values) + " values lie beyond its tolerance, the worst " +
-                        core::format_number(100 * check.worst, 3) + " % (" + check.worst_case + ")");
+            shell.print("check '" + check.name +
+                        "': " + core::counted_of(check.failed, check.values, "value", "lies", "lie") +
+                        " beyond its tolerance, the worst " + core::format_number(100 * check.worst, 3) + " % (" +
+                        check.worst_case + ")");
         }
     }
     shell.print(core::counted(results.computed, "result") + " computed, " + std::to_string(results.reused) +

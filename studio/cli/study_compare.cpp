@@ -61,7 +61,7 @@ std::vector<std::string> numbers_of(const cases::Moved& one) {
     }
     std::string judged = to_string(one.shift);
     if (one.shift == cases::Shift::beyond || one.shift == cases::Shift::within) {
-        judged += ", " + core::format_number(one.in_sigma(), 2) + " standard deviations";
+        judged += ", " + core::counted_text(core::format_number(one.in_sigma(), 2), "standard deviation");
     } else if (one.shift == cases::Shift::unjudged) {
         judged += ", " + cases::percent(one.of_size(), 2);
     }
@@ -127,7 +127,8 @@ std::string summary(const cases::StudyComparison& c) {
     text += c.only_b.empty() ? "" : "; only in B " + std::to_string(c.only_b.size()) + ": " + names_text(c.only_b);
     if (c.unsettled_a + c.unsettled_b > 0) {
         text += "\nwarning: of these cases " + std::to_string(c.unsettled_a) + " in A and " +
-                std::to_string(c.unsettled_b) + " in B have not settled";
+                std::to_string(c.unsettled_b) + " in B " + (c.unsettled_a + c.unsettled_b == 1 ? "has" : "have") +
+                " not settled";
     }
     return text + (c.loads.empty() ? "" : "\nloads (B less A): " + counts_of(c)) + "\n";
 }

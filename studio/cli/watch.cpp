@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
@@ -129,12 +130,13 @@ public:
         const bool nothing = watched_ == 0;
         const std::string alarms = std::to_string(alarms_) + (alarms_ == 1 ? " alarm" : " alarms");
         std::string text = seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
-                           std::to_string(readings_) + " readings, " + seconds(watched_) + " of them judged; " +
+                           core::counted(readings_, "reading") + ", " + seconds(watched_) + " of them judged; " +
                            (nothing        ? "nothing was judged: the noise was still being learned"
                             : alarms_ == 0 ? "the vehicle was the model all the time"
                                            : alarms);
         if (passed_over_ > 0) {
-            text += "; " + std::to_string(passed_over_) + " readings whose time did not ascend were passed over";
+            text += "; " + core::counted(passed_over_, "reading") + " whose time did not ascend " +
+                    (passed_over_ == 1 ? "was" : "were") + " passed over";
         }
         nlohmann::json warnings = nlohmann::json::array();
         for (const core::Problem& problem : problems) {

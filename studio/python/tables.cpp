@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/units.h"
 #include "studio/cli/caller.h"
@@ -197,7 +198,7 @@ py::object outside_remark(const ForceTable& table, const py::sequence& columns) 
         text += (text.empty() ? "" : "; ") + remark.message;
     }
     return rows == 1 ? py::str(text)
-                     : py::str(std::to_string(count) + " of " + std::to_string(rows) + " points lie outside: " + text);
+                     : py::str(core::counted_of(count, rows, "point", "lies", "lie") + " outside: " + text);
 }
 
 /// The values of all axes, those that `given` does not name as the command line takes them; and what was chosen.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/random.h"
 #include "core/text.h"
 #include "surrogates/discovery/wording.h"
@@ -82,8 +83,8 @@ std::string evidence_of_runs(const FittedHypothesis& one) {
     const auto helped =
         std::count_if(one.explained_by_group.begin(), one.explained_by_group.end(), [](double x) { return x > 0; });
     return "-2 log likelihood falls by " + core::format_number(one.explained, 4) + " for " +
-           std::to_string(one.hypothesis.parameters.size()) + " free number(s), in " + std::to_string(helped) + " of " +
-           std::to_string(one.explained_by_group.size()) + " runs" +
+           core::counted(one.hypothesis.parameters.size(), "free number") + ", in " + std::to_string(helped) + " of " +
+           core::counted(one.explained_by_group.size(), "run") +
            (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/discovery/hypothesis.h"
 
@@ -136,8 +137,9 @@ std::string rest_sentence(const Discovery& discovery) {
     }
     const ErrorChange& chief = discovery.error.front();
     const bool random = rest.depends_on.empty() || rest.depends_on == std::vector<std::string>{"time"};
-    return " A rest of " + core::format_number(rest.unexplained / std::max(chief.noise, 1e-300), 3) +
-           " noises is unexplained" +
+    return " A rest of " +
+           core::counted_text(core::format_number(rest.unexplained / std::max(chief.noise, 1e-300), 3), "noise") +
+           " is unexplained" +
            (random ? std::string(" and follows no variable that was measured, as a random disturbance would")
                    : ", over " + list_of(rest.depends_on)) +
            ".";

@@ -234,7 +234,7 @@ TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
     EXPECT_TRUE(std::isnan(known.results_table().numbers("lift_force_sigma").front())) << "not zero";
     ASSERT_EQ(known.notes.size(), 1u);
     EXPECT_THAT(known.notes.front().message,
-                testing::HasSubstr("lift_force: of 1 runs the standard deviation is unknown"));
+                testing::HasSubstr("lift_force: of 1 run the standard deviation is unknown"));
     EXPECT_EQ(known.surrogates().at("lift_force").check().points, 96u);
     // Nobody states one at all.
     text.erase(text.find(",lift_force_sigma [N]"), 21);

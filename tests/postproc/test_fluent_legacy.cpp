@@ -291,7 +291,7 @@ TEST(FluentLegacy, AFaceOfTwoCornersIsNoFace) {
         folder, replaced(core::read_file(data("ascii.cas")), "4 1 2 3 4 1 0\n5 2", "2 1 2 1 0\n5 2"), "thin.cas"));
     EXPECT_TRUE(std::any_of(field.problems.begin(), field.problems.end(), [](const auto& p) {
         return p.severity == core::Problem::Severity::error &&
-               p.message.find("1 faces of zone 'floor' have fewer corners") == 0;
+               p.message.find("1 face of zone 'floor' has fewer corners") == 0;
     }));
 }
 

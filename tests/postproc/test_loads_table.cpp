@@ -40,7 +40,7 @@ TEST(LoadsTable, MakesOneCaseOfItsMeshes) {
                                        with_lift(138544, 0.270, 0.005), with_lift(138544, 0.4, 0.002)},
                                       "cells", notes);
     ASSERT_EQ(notes.size(), 1U);
-    EXPECT_THAT(notes[0].message, testing::HasSubstr("1 of 2 cases have one mesh alone"));
+    EXPECT_THAT(notes[0].message, testing::HasSubstr("1 of 2 cases has one mesh alone"));
     notes.clear();
     ASSERT_EQ(studies.size(), 2U);
     EXPECT_EQ(studies[0].loads.named.lift_force, 0.242);

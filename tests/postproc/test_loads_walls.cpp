@@ -158,7 +158,7 @@ TEST(Loads, OfZonesThatShareSomeOfTheirFacesAreRefused) {
         loads(field);
         FAIL() << "accepted";
     } catch (const core::InputError& error) {
-        EXPECT_THAT(error.message(), HasSubstr("1 faces of zone"));
+        EXPECT_THAT(error.message(), HasSubstr("1 face of zone"));
         EXPECT_THAT(error.message(), HasSubstr("overlap"));
     }
     // The other side of a thin wall looks the other way.

@@ -193,7 +193,7 @@ TEST(Monitors, ATranscriptGoesOnWithTheEquationsThatJoin) {
     EXPECT_THAT(*residuals.find("x-velocity"), ElementsAre(1.5543e-3, 1e-3, 2e-3));
     EXPECT_THAT(*residuals.find("energy"), ElementsAre(testing::IsNan(), testing::IsNan(), 1e-6));
     ASSERT_EQ(residuals.problems.size(), 1U);
-    EXPECT_THAT(residuals.problems[0].message, HasSubstr("1 rows repeat"));
+    EXPECT_THAT(residuals.problems[0].message, HasSubstr("1 row repeats"));
 }
 
 TEST(ForceReports, ATranscriptWithSeveralReportsGivesThemAll) {

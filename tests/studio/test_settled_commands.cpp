@@ -60,15 +60,14 @@ TEST_F(SettledCommands, AStudySaysItInListReportAndTables) {
     monitor("study/fields/cube-h4-lift.out", 300, 0.01);
     const auto ran = run({"study", "run", "study", "--no-pictures"});
     EXPECT_EQ(ran.exit_code, 0) << ran.errors;
-    EXPECT_THAT(ran.output, HasSubstr("1 of 6 solutions have not settled, the first 'cube-h3'"));
+    EXPECT_THAT(ran.output, HasSubstr("1 of 6 solutions has not settled, 'cube-h3'"));
     EXPECT_THAT(core::read_file(folder.path() / "study" / "report" / "index.html"),
-                HasSubstr("1 of 6 solutions have not settled: cube-h3"));
+                HasSubstr("1 of 6 solutions has not settled: cube-h3"));
     const json again = json::parse(run({"study", "run", "study", "--no-pictures", "--json"}).output);
     EXPECT_EQ(again["not_settled"], json({"cube-h3"}));
     const std::string points = again["results"]["table/lift"]["points"];
     EXPECT_THAT(points, HasSubstr("lift_force_sigma"));
-    EXPECT_THAT(again["results"]["table/lift"]["remarks"].dump(),
-                HasSubstr("solutions that have not settled: cube-h3"));
+    EXPECT_THAT(again["results"]["table/lift"]["remarks"].dump(), HasSubstr("solution that has not settled: cube-h3"));
     // Four solutions have no history: their error is unknown, not 0.
     EXPECT_THAT(again["results"]["table/lift"]["remarks"].dump(), HasSubstr("4 of 6 points have no lift_force_sigma"));
     const json list = json::parse(run({"study", "list", "study", "--json"}).output)["cases"];
@@ -103,7 +102,7 @@ TEST_F(SettledCommands, WhatRestsOnForceTablesSaysItInTextAndJson) {
                      "kind = \"time_series\"\n[noise]\ngap = \"0.05 mm\"\n[[run]]\nfile = \"run-1.csv\"\n"
                      "[[run]]\nfile = \"run-2.csv\"\n[[run]]\nfile = \"run-3.csv\"\n");
     // Free runs: their column of input is nought all along, and no law of it may be looked for.
-    const std::string sentence = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string sentence = "1 of 8 points is of a solution that has not settled: row 2";
     for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
              {"table", "at", "lift.csv", "gap=6mm"},
              {"table", "at", "model.toml", "gap=6mm"},
@@ -187,9 +186,9 @@ TEST_F(SettledCommands, TheErrorOfAMeanAndThatOfTheMeshBothReachTheTable) {
     EXPECT_EQ(both.find("first_time")->unit, "s");
     const double in_time = alone.numbers("lift_force_sigma")[1], sigma = both.numbers("lift_force_sigma")[0];
     EXPECT_GT(sigma, 1.2 * in_time);
-    const auto json = nlohmann::json::parse(
-        run({"--json", "loads", "w-c{cells:1}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
-    const auto& one = json.contains("files") ? json.at("files").at(0) : json;  // one row stands alone
+    const json said =
+        json::parse(run({"--json", "loads", "w-c{cells:1}-t{time:s}.csv", "--mean", "--mesh-study", "cells"}).output);
+    const json& one = said.contains("files") ? said.at("files").at(0) : said;  // one row stands alone
     EXPECT_NEAR(one.at("sigma").at("lift_force").get<double>(), sigma, 1e-6 * sigma);
     const double mesh = one.at("mesh_uncertainty").at("lift_force").at("standard_uncertainty").get<double>();
     EXPECT_NEAR(std::hypot(mesh, in_time), sigma, 1e-3 * sigma);

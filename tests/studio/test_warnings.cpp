@@ -85,7 +85,7 @@ protected:
 
 TEST_F(Warnings, StandOnceWithTheResultOfEveryCommand) {
     write_files();
-    const std::string unsettled = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
     const std::vector<std::vector<std::string>> on_the_table = {
         {"table", "fit", "lift.csv"},
         {"table", "at", "lift.csv", "gap=6mm"},
@@ -111,7 +111,7 @@ TEST_F(Warnings, StandOnceWithTheResultOfEveryCommand) {
 
 TEST_F(Warnings, StandInBothStreamsOfAScriptAndOnceOnATerminal) {
     write_files();
-    const std::string unsettled = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
     const auto apart = run_underbody({"table", "at", "lift.csv", "gap=6mm"}, folder.path());
     EXPECT_EQ(times_in(apart.output, unsettled), 1U) << apart.output;
     EXPECT_EQ(times_in(apart.errors, unsettled), 1U) << apart.errors;
@@ -141,7 +141,7 @@ TEST_F(Warnings, StandInTheCommentsOfATableAndOnStderr) {
 
 TEST_F(Warnings, OfAnExportStandOnStderrForStdoutListsItsFiles) {
     write_files();
-    const std::string unsettled = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
     const std::vector<std::vector<std::string>> exports = {
         {"export", "lift.csv", "--format", "csv", "--out", "once.csv"},
         {"export", "once.csv", "--format", "c", "--out", "lift.h"},

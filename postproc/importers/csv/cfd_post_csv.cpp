@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/field/surface_check.h"
 #include "postproc/importers/csv/csv_columns.h"
@@ -278,7 +279,8 @@ private:
             }
             note(Severity::warning,
                  "zone '" + zone.name + "': " + std::to_string(read.missing[c]) + " of " + std::to_string(read.rows) +
-                     " values of '" + plans[c].name + "' are missing, the first one here",
+                     " values of '" + plans[c].name + "' " +
+                     (read.missing[c] == 1 ? "is missing, here" : "are missing, the first one here"),
                  place);
         }
     }
@@ -388,8 +390,9 @@ private:
                  place_of_row(section, check.first_zero_area));
         }
         if (check.unused_nodes > 0) {
-            const std::string message = "zone '" + zone.name + "': " + std::to_string(check.unused_nodes) + " of " +
-                                        std::to_string(rows) + " nodes belong to no face";
+            const std::string message =
+                "zone '" + zone.name + "': " + core::counted_of(check.unused_nodes, rows, "node", "belongs", "belong") +
+                " to no face";
             if (last && 200 * check.unused_nodes > rows) {
                 throw InputError("parse", message + ": the file is cut short",
                                  text_.place_of(text_.text().data() + text_.text().size() - 1, false),
@@ -406,8 +409,8 @@ private:
         }
         if (check.edges.non_manifold > 0) {
             note(Severity::warning,
-                 "zone '" + zone.name + "': " + std::to_string(check.edges.non_manifold) +
-                     " edges have more than two faces",
+                 "zone '" + zone.name + "': " + core::counted(check.edges.non_manifold, "edge has", "edges have") +
+                     " more than two faces",
                  text_.place_of(section.at, false));
         }
     }

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "core/counted.h"
 #include "core/inputs.h"
 #include "core/text.h"
 #include "postproc/field/times.h"
@@ -213,8 +214,8 @@ void mind_unused_nodes(const EnsightPart& whole, const std::string& file, core::
     const auto unused = std::count(used.begin(), used.end(), false);
     if (unused > 0 || part.elements() == 0) {
         problems.push_back({core::Problem::Severity::warning,
-                            std::to_string(unused) + " nodes of part " + part.name +
-                                " belong to no element: is the geometry cut short?",
+                            core::counted(unused, "node") + " of part " + part.name +
+                                (unused == 1 ? " belongs" : " belong") + " to no element: is the geometry cut short?",
                             {file, {}, {}, {}}});
     }
 }

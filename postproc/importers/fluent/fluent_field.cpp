@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/importers/fluent/fluent_settings.h"
 #include "postproc/importers/fluent/fluent_variables.h"
@@ -241,15 +242,17 @@ void Assembly::add_volumes(Field& field) {
         Zone zone = named_zone(block->zone, 0, true);
         progress_.report(0.7, "building " + zone.name);
         CellArrays cells = builder.build(*block, progress_);
-        const auto note = [&](std::uint64_t count, const char* what) {
+        const auto note = [&](std::uint64_t count, const char* one, const char* several) {
             if (count > 0) {
-                field.problems.push_back({core::Problem::Severity::warning,
-                                          std::to_string(count) + " cells of zone " + zone.name + what, place});
+                field.problems.push_back(
+                    {core::Problem::Severity::warning,
+                     core::counted(count, "cell") + " of zone " + zone.name + (count == 1 ? one : several), place});
             }
         };
-        note(cells.inverted, " have no positive volume");
-        note(cells.open, " are not closed by their faces");
-        note(block->count - cells.types.size() - hidden_within(*block), " have no faces and are left out");
+        note(cells.inverted, " has no positive volume", " have no positive volume");
+        note(cells.open, " is not closed by its faces", " are not closed by their faces");
+        note(block->count - cells.types.size() - hidden_within(*block), " has no faces and is left out",
+             " have no faces and are left out");
         field.metadata.emplace_back((mesh_.dimension == 2 ? "area of " : "volume of ") + zone.name,
                                     core::format_number(cells.volume));
         if (last) {
@@ -279,11 +282,12 @@ void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>&
         return;
     }
     if (too_small > 0) {
-        field.problems.push_back(
-            {core::Problem::Severity::error,
-             std::to_string(too_small) + " faces of zone '" + zone.name +
-                 "' have fewer corners than a face can have, and are left out: is the mesh damaged?",
-             {mesh_.file, {}, {}, {}}});
+        field.problems.push_back({core::Problem::Severity::error,
+                                  core::counted(too_small, "face") + " of zone '" + zone.name +
+                                      (too_small == 1 ? "' has fewer corners than a face can have, and is left out"
+                                                      : "' have fewer corners than a face can have, and are left out") +
+                                      ": is the mesh damaged?",
+                                  {mesh_.file, {}, {}, {}}});
     }
     if (elements.empty()) {
         field.problems.push_back(

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/importers/fluent/fluent_legacy.h"
 #include "postproc/importers/fluent/fluent_variables.h"
@@ -108,9 +109,10 @@ public:
             },
             [&] { return understood(); });
         if (odd_values_ > 0) {
-            problems_.push_back({core::Problem::Severity::warning,
-                                 std::to_string(odd_values_) + " values are not finite: the solution has diverged",
-                                 {in_.name(), {}, {}, {}}});
+            problems_.push_back(
+                {core::Problem::Severity::warning,
+                 core::counted(odd_values_, "value is", "values are") + " not finite: the solution has diverged",
+                 {in_.name(), {}, {}, {}}});
         }
         mind_missing_pressure();
         for (const auto& section : listed_sections(skipped_)) {

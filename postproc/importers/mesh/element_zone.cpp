@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 
+#include "core/counted.h"
 #include "postproc/importers/mesh/array_names.h"
 #include "postproc/importers/mesh/variable_reading.h"
 #include "postproc/importers/mesh/vtk_arrays.h"
@@ -317,8 +318,9 @@ Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_
     const Chosen chosen = choose(part, dimension);
     if (chosen.left_out > 0) {
         problems.push_back({core::Problem::Severity::warning,
-                            "zone " + zone.name + ": " + std::to_string(chosen.left_out) +
-                                " elements of lower dimension than the others are left out",
+                            "zone " + zone.name + ": " + core::counted(chosen.left_out, "element") +
+                                " of lower dimension than the others " + (chosen.left_out == 1 ? "is" : "are") +
+                                " left out",
                             {file, {}, {}, {}}});
     }
     if (zone.kind == ZoneKind::unknown && volume) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 
+#include "core/counted.h"
 #include "core/inputs.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -221,8 +222,9 @@ void FoamFields::add_patch(const FoamPiece& piece, std::size_t patch, const Valu
     block.values.grow_to(faces.count * n);
     if (given != nullptr && given->one_a_face) {
         if (given->list.size() != block.values.size()) {
-            refuse(file, "patch '" + piece.patches[patch].name + "' has " + std::to_string(given->list.size() / n) +
-                             " values for " + std::to_string(faces.count) + " faces");
+            refuse(file, "patch '" + piece.patches[patch].name + "' has " +
+                             core::counted(given->list.size() / n, "value") + " for " +
+                             core::counted(faces.count, "face"));
         }
         std::copy(given->list.begin(), given->list.end(), block.values.begin());
     } else {

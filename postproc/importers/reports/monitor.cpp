@@ -2,11 +2,14 @@
 
 #include <cmath>
 
+#include "core/counted.h"
+
 namespace underbody::postproc {
 
 core::Problem repeated_rows(std::size_t rows, const std::string& file) {
     return {core::Problem::Severity::note,
-            std::to_string(rows) + " rows repeat or go back, as after a restart: the last ones count",
+            core::counted(rows, "row repeats or goes back, as after a restart: the last one counts",
+                          "rows repeat or go back, as after a restart: the last ones count"),
             {file, {}, {}, {}}};
 }
 
@@ -30,9 +33,10 @@ void MonitorRows::into(Monitor& monitor) const {
         monitor.problems.push_back(repeated_rows(repeated_, monitor.file));
     }
     if (odd > 0) {
-        monitor.problems.push_back({core::Problem::Severity::warning,
-                                    std::to_string(odd) + " values are not finite: the solution has diverged",
-                                    {monitor.file, {}, {}, {}}});
+        monitor.problems.push_back(
+            {core::Problem::Severity::warning,
+             core::counted(odd, "value is", "values are") + " not finite: the solution has diverged",
+             {monitor.file, {}, {}, {}}});
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/counted.h"
+
 namespace underbody::postproc {
 
 void ResidualHistory::begin(double iteration) {
@@ -36,9 +38,10 @@ Monitor ResidualHistory::finish(const std::string& first_column) {
         throw core::InputError("format", "the solver's output holds no residuals", {monitor_.file, {}, {}, {}});
     }
     if (odd_ > 0) {
-        monitor_.problems.push_back({core::Problem::Severity::warning,
-                                     std::to_string(odd_) + " residuals are not finite: the solution has diverged",
-                                     {monitor_.file, {}, {}, {}}});
+        monitor_.problems.push_back(
+            {core::Problem::Severity::warning,
+             core::counted(odd_, "residual is", "residuals are") + " not finite: the solution has diverged",
+             {monitor_.file, {}, {}, {}}});
     }
     return std::move(monitor_);
 }

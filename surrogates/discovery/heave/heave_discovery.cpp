@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_loop.h"
@@ -120,9 +121,8 @@ void HeaveLoop::drop_accidents() {
         fit_null();
     }
     if (dropped > 0) {
-        warn(std::to_string(dropped) +
-             " gap readings lie more than six standard deviations from what the motion before "
-             "them and after them says: not used");
+        warn(core::counted(dropped, "gap reading lies", "gap readings lie") +
+             " more than six standard deviations from what the motion before and after says: not used");
     }
     // the same for what is held out, with the noise that was found
     HeaveRecords& records = test_records_ ? *test_records_ : records_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
@@ -361,8 +362,8 @@ std::vector<PitchRecord> pitch_records(const dynamics::Model& model, const dynam
         }
         if (end < least_rows) {
             problems.push_back({core::Problem::Severity::warning,
-                                "run " + run.name + " has only " + std::to_string(end) +
-                                    " rows before it touches the ground or ends: not used",
+                                "run " + run.name + " has only " + core::counted(end, "row") +
+                                    " before it touches the ground or ends: not used",
                                 place});
             continue;
         }

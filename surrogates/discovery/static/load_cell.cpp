@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
@@ -185,11 +186,12 @@ private:
             readings_.push_back({&block, block.mean_value - zero->value, block.variance() + zero->variance});
         }
         if (without > 0) {
-            warn(std::to_string(without) + " blocks have no pump-off block at their gap and were left out");
+            warn(core::counted(without, "block has no pump-off block at its gap and was left out",
+                               "blocks have no pump-off block at their gap and were left out"));
         }
         if (held_count > 0) {
-            warn(std::to_string(held_count) +
-                 " blocks have a pump-off block on one side only: its value was held, a drift goes into their force");
+            warn(core::counted(held_count, "block has", "blocks have") +
+                 " a pump-off block on one side only: its value was held, a drift goes into the force");
         }
     }
 

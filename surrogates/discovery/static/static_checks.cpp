@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
@@ -186,10 +187,10 @@ private:
     void check_tables() {
         if (experiment_.outside_tables() > 0) {
             const Outside outside = outside_of(experiment_);
-            warn(std::to_string(experiment_.outside_tables()) + " of " +
-                 std::to_string(experiment_.observations().size()) +
-                 " readings lie outside the range of a declared table, which holds its end value there (" +
-                 outside.ranges + "): what is found there is about the table's end, not about physics" +
+            warn(core::counted_of(experiment_.outside_tables(), experiment_.observations().size(), "reading", "lies",
+                                  "lie") +
+                 " outside the range of a declared table, which holds its end value there (" + outside.ranges +
+                 "): what is found there is about the table's end, not about physics" +
                  (outside.slip.empty() ? "" : ". " + outside.slip));
         }
     }

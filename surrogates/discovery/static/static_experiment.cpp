@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 
+#include "core/counted.h"
+
 namespace underbody::discovery {
 
 using dynamics::Channel;
@@ -102,9 +104,10 @@ void StaticExperiment::collect(const dynamics::Measurements& data) {
         }
     }
     if (without > 0) {
-        problems_.push_back({core::Problem::Severity::warning,
-                             std::to_string(without) + " rows lack a set point that the model needs: left out",
-                             core::Place{data.folder.string(), {}, {}, {}}});
+        problems_.push_back(
+            {core::Problem::Severity::warning,
+             core::counted(without, "row lacks", "rows lack") + " a set point that the model needs: left out",
+             core::Place{data.folder.string(), {}, {}, {}}});
     }
     if (observations_.size() < 8) {
         throw core::InputError(

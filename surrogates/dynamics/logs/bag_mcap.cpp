@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/dynamics/logs/log_bytes.h"
 #include "surrogates/dynamics/logs/ros_message.h"
@@ -95,11 +96,12 @@ public:
         while (next()) {
         }
         if (cut_at_) {
-            end.problems.push_back({core::Problem::Severity::warning,
-                                    "the log " + cut_ + ": " + cut_left_ + "; " + std::to_string(topics_.messages()) +
-                                        " messages before it were read, up to " +
-                                        core::format_number(topics_.last(), 6) + " s of the log",
-                                    core::Place{name_, {}, {}, *cut_at_}});
+            end.problems.push_back(
+                {core::Problem::Severity::warning,
+                 "the log " + cut_ + ": " + cut_left_ + "; " +
+                     core::counted(topics_.messages(), "message before it was", "messages before it were") +
+                     " read, up to " + core::format_number(topics_.last(), 6) + " s of the log",
+                 core::Place{name_, {}, {}, *cut_at_}});
         }
         for (const auto& [what, count] : bad_chunks_) {
             end.problems.push_back({core::Problem::Severity::warning,

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <thread>
 
+#include "core/counted.h"
 #include "core/text.h"
 
 namespace underbody::dynamics {
@@ -73,8 +74,9 @@ public:
     void sum_up() const {
         if (bad_ + empty_ > said_) {
             problems_.push_back({core::Problem::Severity::warning,
-                                 "in all " + std::to_string(bad_) + " lines were passed over, and numbers of " +
-                                     std::to_string(empty_) + " lines were not finite",
+                                 "in all " + core::counted(bad_, "line was", "lines were") +
+                                     " passed over, and numbers of " + core::counted(empty_, "line") +
+                                     " were not finite",
                                  core::Place{name_, {}, {}, {}}});
         }
     }

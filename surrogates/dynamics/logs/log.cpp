@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/dynamics/logs/log_bytes.h"
@@ -51,8 +52,9 @@ void DamageReport::tell(const std::string& file, double last, core::Problems& pr
     if (places_ > 0) {
         problems.push_back({core::Problem::Severity::warning,
                             "damaged in " + std::to_string(places_) + (places_ == 1 ? " place: " : " places: ") +
-                                std::to_string(bytes_) + " bytes from byte " + std::to_string(first_) +
-                                " on fit no message and were skipped; the rest was read " + upto,
+                                core::counted(bytes_, "byte") + " from byte " + std::to_string(first_) + " on " +
+                                (bytes_ == 1 ? "fits no message and was" : "fit no message and were") +
+                                " skipped; the rest was read " + upto,
                             core::Place{file, {}, {}, first_}});
     }
     if (cut_at_ >= 0) {

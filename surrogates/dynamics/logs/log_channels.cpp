@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/heading.h"
 #include "core/text.h"
@@ -61,8 +62,9 @@ void put_in_order(ChannelReadings& readings, const std::string& quantity, const 
     readings = std::move(kept);
     if (dropped > 0) {
         problems.push_back({core::Problem::Severity::warning,
-                            std::to_string(dropped) + " readings of " + quantity +
-                                " whose clock stands still or runs backwards are left out",
+                            core::counted(dropped, "reading") + " of " + quantity +
+                                " whose clock stands still or runs backwards " + (dropped == 1 ? "is" : "are") +
+                                " left out",
                             core::Place{log, {}, {}, {}}});
     }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/quantile.h"
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
@@ -116,8 +117,8 @@ std::string outliers_text(const std::string& run, std::size_t count, const std::
 }
 
 std::string saturated_text(const std::string& run, std::size_t count) {
-    return std::to_string(count) + " gap readings of " + run +
-           " stand exactly at the end of the sensor's range (saturated): not used";
+    return core::counted(count, "gap reading") + " of " + run + (count == 1 ? " stands" : " stand") +
+           " exactly at the end of the sensor's range (saturated): not used";
 }
 
 std::string outside_text(const std::string& run, const InsideTables& inside, const GapRange& tables) {

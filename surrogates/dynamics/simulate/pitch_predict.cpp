@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
 
@@ -68,8 +69,8 @@ void check_motion(const std::vector<PitchRunPrediction>& all, const Model& model
     }
     if (out.diverged > 0) {
         out.remarks.push_back({core::Problem::Severity::warning,
-                               std::to_string(out.diverged) + " of " + std::to_string(out.windows) +
-                                   " predicted windows run away from every bound: the error says that the model is "
+                               core::counted_of(out.diverged, out.windows, "predicted window", "runs", "run") +
+                                   " away from every bound: the error says that the model is "
                                    "wrong there, not by how much",
                                {}});
     }

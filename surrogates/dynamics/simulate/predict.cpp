@@ -9,6 +9,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -403,8 +404,8 @@ void check_bounds(const SeriesPrediction& all, const Model& model, const Measure
     }
     if (out.diverged > 0) {
         out.remarks.push_back({core::Problem::Severity::warning,
-                               std::to_string(out.diverged) + " of " + std::to_string(out.windows) +
-                                   " predicted windows run away to more than a hundred times every measured gap: the "
+                               core::counted_of(out.diverged, out.windows, "predicted window", "runs", "run") +
+                                   " away to more than a hundred times every measured gap: the "
                                    "error says that the model is wrong there, not by how much",
                                {}});
     }

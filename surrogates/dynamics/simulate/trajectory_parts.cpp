@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 
@@ -78,9 +79,8 @@ void remark_outside(core::Problems& remarks, const std::vector<bool>& outside, c
     const auto beyond = std::count(outside.begin(), outside.end(), true);
     if (beyond > 0) {
         remarks.push_back({core::Problem::Severity::warning,
-                           std::to_string(beyond) + " of " + std::to_string(outside.size()) +
-                               " outputs lie outside the range of a force table" + range +
-                               ", where it holds its end value",
+                           core::counted_of(beyond, outside.size(), "output", "lies", "lie") +
+                               " outside the range of a force table" + range + ", where it holds its end value",
                            {}});
     }
 }

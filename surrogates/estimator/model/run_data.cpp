@@ -59,8 +59,9 @@ std::vector<Smoothed> smooth_runs(const dynamics::Model& model, const dynamics::
         progress.check();
         FilterResult result = extended_filter(run.plant, run.signals, noise, true);
         if (result.outliers > 0) {
-            note(remarks, "run '" + run.run->name + "': " + std::to_string(result.outliers) +
-                              " outliers of the gap were left out");
+            note(remarks, "run '" + run.run->name + "': " +
+                              core::counted(result.outliers, "outlier of the gap was", "outliers of the gap were") +
+                              " left out");
         }
         const double step = usual_step(run.signals);
         all.push_back({std::move(run), std::move(result), step});

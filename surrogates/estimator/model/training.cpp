@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/counted.h"
 #include "core/parallel.h"
 #include "core/random.h"
 
@@ -306,8 +307,8 @@ TrainingSet training_set(const SeparatedPlant& plant, const TrainingOptions& opt
     set.remarks = plant.remarks;
     if (outside > 0) {
         set.remarks.push_back({core::Problem::Severity::warning,
-                               std::to_string(outside) + " of " + std::to_string(set.count) +
-                                   " samples lie beyond the force table, where it holds its end value",
+                               core::counted_of(outside, set.count, "sample", "lies", "lie") +
+                                   " beyond the force table, where it holds its end value",
                                {}});
     }
     return set;

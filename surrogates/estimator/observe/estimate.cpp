@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/estimator/observe/prepared_runs.h"
@@ -330,8 +331,8 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
         bridged += signals.back().bridged;
     }
     if (bridged > 0 && o.observer != "extended") {
-        note(out.remarks,
-             std::to_string(bridged) + " missing heave velocities were bridged by the slope of the gap over 0.5 s");
+        note(out.remarks, core::counted(bridged, "missing heave velocity was", "missing heave velocities were") +
+                              " bridged by the slope of the gap over 0.5 s");
     }
     double density = out.noise.force_density;
     if (o.observer == "kalman" && out.density_chosen) {
@@ -452,8 +453,9 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
     }
     for (const auto& r : out.runs) {
         if (r.outliers > 0) {
-            note(out.remarks,
-                 "run '" + r.name + "': " + std::to_string(r.outliers) + " outliers of the gap were left out");
+            note(out.remarks, "run '" + r.name + "': " +
+                                  core::counted(r.outliers, "outlier of the gap was", "outliers of the gap were") +
+                                  " left out");
         }
         if (r.outside > 0) {
             note(out.remarks,

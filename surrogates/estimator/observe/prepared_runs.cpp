@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
@@ -172,8 +173,10 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
     const std::vector<double> written = run.values("input_force");
     const auto missing = std::count_if(written.begin(), written.end(), [](double u) { return !std::isfinite(u); });
     if (missing > 0) {
-        note(remarks, "run '" + run.name + "': " + std::to_string(missing) + " missing values of input_force were " +
-                          (s.held ? "held from the one before" : "interpolated"));
+        note(remarks,
+             "run '" + run.name + "': " +
+                 core::counted(missing, "missing value of input_force was ", "missing values of input_force were ") +
+                 (s.held ? "held from the one before" : "interpolated"));
     }
     return s;
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/fit/fit.h"
@@ -73,7 +74,7 @@ core::Problems kinks(const SetPoints& points) {
     }
     if (count > most) {
         found.push_back({core::Problem::Severity::warning,
-                         "and " + std::to_string(count - most) + " more such turns",
+                         "and " + core::counted(count - most, "more such turn"),
                          {points.table.source, {}, {}, {}}});
     }
     return found;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/counted.h"
 #include "core/mistyped.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -211,8 +212,9 @@ void read_sigma(SetPoints& points) {
         for (double& s : points.sigma) {
             s = std::isnan(s) ? largest : s;
         }
-        points.remarks.push_back(warning(std::to_string(missing) + " of " + std::to_string(points.sigma.size()) +
-                                             " points have no " + name + ": they take the largest one, " +
+        points.remarks.push_back(warning(core::counted_of(missing, points.sigma.size(), "point", "has", "have") +
+                                             " no " + name + (missing == 1 ? ": it takes" : ": they take") +
+                                             " the largest one, " +
                                              in_written_unit(points.table, points.quantity, largest),
                                          {points.table.source, {}, {}, {}}));
     }

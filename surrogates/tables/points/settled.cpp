@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/counted.h"
+
 namespace underbody::tables {
 
 namespace {
@@ -36,8 +38,9 @@ core::Problems unsettled_points(const core::Table& points) {
         list += (i > 0 ? ", " : "") + names[i];
     }
     return {{core::Problem::Severity::warning,
-             std::to_string(names.size()) + " of the " + std::to_string(points.rows()) +
-                 " points are of solutions that have not settled: " + list + (names.size() > most ? ", ..." : ""),
+             core::counted_of(names.size(), points.rows(), "point", "is of a solution that has",
+                              "are of solutions that have") +
+                 " not settled: " + list + (names.size() > most ? ", ..." : ""),
              {points.source, {}, {}, {}}}};
 }
 

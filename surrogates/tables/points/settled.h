@@ -13,7 +13,7 @@ namespace underbody::tables {
 /// The cases (column `case`, else `file`, else "row N") whose solutions had not settled; empty without the column.
 std::vector<std::string> not_settled(const core::Table& points);
 
-/// A warning where some had not: "2 of the 9 points are of solutions that have not settled: a, b".
+/// A warning where some had not: "2 of 9 points are of solutions that have not settled: a, b".
 core::Problems unsettled_points(const core::Table& points);
 
 /// For the head of a file: that all had settled, or of how many it is not known. What had not is a warning of the

@@ -99,7 +99,7 @@ def test_outside_the_table_is_said(program, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         table(gap=[0.003, 0.004])
-    with pytest.warns(underbody.UnderbodyWarning, match="1 of 2 points lie outside"):
+    with pytest.warns(underbody.UnderbodyWarning, match="1 of 2 points lies outside"):
         assert table(gap=["3 mm", "50 mm"])[1] == table(gap="11 mm")
     with pytest.warns(underbody.UnderbodyWarning):
         assert table.at(gap=0.05).outside

@@ -134,7 +134,7 @@ TEST(ExportsOfText, WarningsAndWordsOfTheHeadTravelThroughCsvAndJson) {
     settled[1] = "not settled";
     settled[2] = "unknown";
     points.add_text("settled", settled);
-    const std::vector<std::string> words = {"1 of the 8 points are of solutions that have not settled: row 2",
+    const std::vector<std::string> words = {"1 of 8 points is of a solution that has not settled: row 2",
                                             "Whether 1 of the 8 solutions behind the points had settled is not known",
                                             "Of variant ellipse", "ade from campaign.csv: 8 points, fitted as "};
     const auto expect_words = [&](const std::filesystem::path& path) {
@@ -250,7 +250,7 @@ TEST(ExportText, TheHeadSaysInWordsWhetherTheSolutionsHadSettled) {
                 HasSubstr("Whether the solutions behind the points had settled is not known"));
     EXPECT_THAT(head("unknown", "settled"), HasSubstr("Whether 1 of the 5 solutions behind the points had settled"));
     const std::string moving = head("not settled", "settled");
-    EXPECT_THAT(moving, HasSubstr("WARNING: 1 of the 5 points are of solutions that have not settled: case-0"));
+    EXPECT_THAT(moving, HasSubstr("WARNING: 1 of 5 points is of a solution that has not settled: case-0"));
     for (const std::string& one : {head("unknown", "unknown"), head("settled", "settled"), moving}) {
         EXPECT_EQ(one.find("Of settled"), std::string::npos);
     }
