@@ -30,7 +30,8 @@ batch = underbody.loads("fields/ellipse-h{gap:mm}-p{pitch:deg}.csv", symmetry="y
 print(batch.columns["gap"], batch.columns["lift_force"])
 
 # %% [markdown]
-# PyVista takes the same memory: `pyvista.wrap(hull.vtk)`, or all zones with `field.vtk`. meshio reads what
+# PyVista takes the same memory: `pyvista.wrap(hull.vtk)`, or all zones with `field.vtk`. Debian 12 has no package of it: the tests
+# look at these objects with VTK's own `vtkmodules` (`python3-vtk9`), and with PyVista where that is installed. meshio reads what
 # `underbody.import_(file, out="body.vtu")` writes.
 
 # %%

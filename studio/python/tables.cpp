@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -28,13 +29,10 @@ using tables::ForceTable;
 using Numbers = py::array_t<double, py::array::forcecast>;
 
 /// An array that owns the numbers.
-py::array_t<double> taken(std::vector<double>&& numbers, std::vector<py::ssize_t> shape = {}) {
+py::array_t<double> taken(std::vector<double>&& numbers) {
     auto* kept = new std::vector<double>(std::move(numbers));
     const py::capsule owner(kept, [](void* all) { delete static_cast<std::vector<double>*>(all); });
-    if (shape.empty()) {
-        shape = {static_cast<py::ssize_t>(kept->size())};
-    }
-    return py::array_t<double>(shape, kept->data(), owner);
+    return py::array_t<double>(static_cast<py::ssize_t>(kept->size()), kept->data(), owner);
 }
 
 /// Points as columns, one for each axis of a table, taken where they lie; a column of one number stands for every
@@ -61,37 +59,22 @@ public:
         std::memcpy(&x, first_[axis] + static_cast<py::ssize_t>(row) * step_[axis], sizeof x);
         return x;
     }
-    /// Rows [begin, end) side by side: [(end - begin) * axes].
-    void gather(std::size_t begin, std::size_t end, double* to) const {
+    /// Rows [begin, end) side by side: [(end - begin) * axes]. Whether one of them lies outside the table's axes.
+    bool gather(const ForceTable& table, std::size_t begin, std::size_t end, double* to) const {
         const std::size_t axes = first_.size();
+        bool outside = false;
         for (std::size_t k = 0; k < axes; ++k) {
+            const double lower = table.axes()[k].lower, upper = table.axes()[k].upper;
             const char* from = first_[k] + static_cast<py::ssize_t>(begin) * step_[k];
             const py::ssize_t step = step_[k];
             for (std::size_t i = 0; i < end - begin; ++i, from += step) {
-                std::memcpy(to + i * axes + k, from, sizeof(double));
+                double x = 0;
+                std::memcpy(&x, from, sizeof x);
+                to[i * axes + k] = x;
+                outside |= static_cast<bool>(static_cast<int>(x < lower) | static_cast<int>(x > upper));
             }
         }
-    }
-    /// Do all of them lie within the axes? The usual case, in one quick pass.
-    [[nodiscard]] bool inside(const ForceTable& table) const {
-        std::atomic<bool> inside = true;
-        core::parallel_blocks(rows_, block, [&](std::size_t begin, std::size_t end) {
-            bool outside = false;
-            for (std::size_t k = 0; k < first_.size(); ++k) {
-                const double lower = table.axes()[k].lower, upper = table.axes()[k].upper;
-                const char* from = first_[k] + static_cast<py::ssize_t>(begin) * step_[k];
-                const py::ssize_t step = step_[k];
-                for (std::size_t i = begin; i < end; ++i, from += step) {
-                    double x = 0;
-                    std::memcpy(&x, from, sizeof x);
-                    outside |= static_cast<bool>(static_cast<int>(x < lower) | static_cast<int>(x > upper));
-                }
-            }
-            if (outside) {
-                inside = false;
-            }
-        });
-        return inside;
+        return outside;
     }
 
     /// Points of a block, small enough for the processor's cache.
@@ -104,75 +87,80 @@ private:
     std::size_t rows_ = 1;
 };
 
-/// Work on blocks of points in Python's threads' own time: work(begin, end, points of the block).
+/// Work on blocks of points in Python's threads' own time: work(begin, end, points of the block). Whether a point lies
+/// outside the table's axes.
 template <typename Work>
-void for_blocks(const Points& points, std::size_t axes, std::size_t block, const Work& work) {
+bool for_blocks(const ForceTable& table, const Points& points, std::size_t block, const Work& work) {
+    std::atomic<bool> outside = false;
     Call(py::none()).run(core::Progress::none(), [&] {
         core::parallel_blocks(points.rows(), block, [&](std::size_t begin, std::size_t end) {
-            const auto gathered = std::make_unique_for_overwrite<double[]>((end - begin) * axes);
-            points.gather(begin, end, gathered.get());
+            const auto gathered = std::make_unique_for_overwrite<double[]>((end - begin) * table.axes().size());
+            if (points.gather(table, begin, end, gathered.get())) {
+                outside = true;
+            }
             work(begin, end, gathered.get());
         });
     });
+    return outside;
 }
 
+/// An array that nothing is written to yet: [rows], or [rows, columns].
+template <typename Number = double>
+py::array_t<Number> room_for(std::size_t rows) {
+    return py::array_t<Number>(static_cast<py::ssize_t>(rows));
+}
+py::array_t<double> room_for(std::size_t rows, std::size_t columns) {
+    return py::array_t<double>({static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(columns)});
+}
+
+/// value, slope [n, axes] or None, and whether a point lies outside the axes
 py::tuple values(const ForceTable& table, const py::sequence& columns, bool with_slopes) {
     const Points points(table, columns);
-    const std::size_t rows = points.rows(), axes = table.axes().size();
-    std::vector<double> value(rows), slope(with_slopes ? rows * axes : 0);
-    bool by_policy = false;
-    for (const auto& axis : table.axes()) {
-        by_policy = by_policy || axis.range != tables::RangePolicy::clamp;
-    }
-    for_blocks(points, axes, Points::block, [&](std::size_t begin, std::size_t end, const double* at) {
-        double* to = with_slopes ? slope.data() + begin * axes : nullptr;
-        if (!by_policy) {
-            tables::values(table, at, end - begin, value.data() + begin, to);
-            return;
-        }
-        for (std::size_t i = begin; i < end; ++i, at += axes, to += with_slopes ? axes : 0) {
-            value[i] = table.value_by_policy(at, to);
-        }
+    const std::size_t axes = table.axes().size();
+    py::array_t<double> value = room_for(points.rows()), slope = room_for(with_slopes ? points.rows() : 0, axes);
+    double *const values = value.mutable_data(), *const slopes = with_slopes ? slope.mutable_data() : nullptr;
+    const bool by_policy = std::any_of(table.axes().begin(), table.axes().end(), [](const tables::TableAxis& axis) {
+        return axis.range != tables::RangePolicy::clamp;
     });
-    return py::make_tuple(
-        taken(std::move(value)),
-        with_slopes
-            ? py::object(taken(std::move(slope), {static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(axes)}))
-            : py::object(py::none()));
+    const bool outside =
+        for_blocks(table, points, Points::block, [&](std::size_t begin, std::size_t end, const double* at) {
+            double* to = with_slopes ? slopes + begin * axes : nullptr;
+            if (!by_policy) {
+                tables::values(table, at, end - begin, values + begin, to);
+                return;
+            }
+            for (std::size_t i = begin; i < end; ++i, at += axes, to += with_slopes ? axes : 0) {
+                values[i] = table.value_by_policy(at, to);
+            }
+        });
+    return py::make_tuple(value, with_slopes ? py::object(slope) : py::object(py::none()), outside);
 }
 
-/// value, sigma, slope [n, axes], outside, no_data
+/// value, sigma, slope [n, axes], outside, no_data, and whether a point lies outside the axes
 py::tuple at(const ForceTable& table, const py::sequence& columns) {
     const Points points(table, columns);
     const std::size_t rows = points.rows(), axes = table.axes().size();
-    std::vector<double> value(rows), sigma(rows), slope(rows * axes);
-    std::vector<unsigned char> outside(rows), no_data(rows);
-    for_blocks(points, axes, 1024, [&](std::size_t begin, std::size_t end, const double* point) {
+    py::array_t<double> value = room_for(rows), sigma = room_for(rows), slope = room_for(rows, axes);
+    py::array_t<bool> outside = room_for<bool>(rows), no_data = room_for<bool>(rows);
+    double *const values = value.mutable_data(), *const sigmas = sigma.mutable_data(),
+                  *const slopes = slope.mutable_data();
+    bool *const are_outside = outside.mutable_data(), *const lack_data = no_data.mutable_data();
+    const bool beyond = for_blocks(table, points, 1024, [&](std::size_t begin, std::size_t end, const double* point) {
         for (std::size_t i = begin; i < end; ++i, point += axes) {
             const auto e = table.at({point, axes});
-            value[i] = e.value;
-            sigma[i] = e.sigma;
-            std::copy_n(e.slope.begin(), axes, slope.begin() + static_cast<std::ptrdiff_t>(i * axes));
-            outside[i] = e.outside ? 1 : 0;
-            no_data[i] = e.no_data ? 1 : 0;
+            values[i] = e.value;
+            sigmas[i] = e.sigma;
+            std::copy_n(e.slope.begin(), axes, slopes + i * axes);
+            are_outside[i] = e.outside;
+            lack_data[i] = e.no_data;
         }
     });
-    const auto flags = [](const std::vector<unsigned char>& all) {
-        py::array_t<bool> result(static_cast<py::ssize_t>(all.size()));
-        std::copy(all.begin(), all.end(), result.mutable_data());
-        return result;
-    };
-    return py::make_tuple(taken(std::move(value)), taken(std::move(sigma)),
-                          taken(std::move(slope), {static_cast<py::ssize_t>(rows), static_cast<py::ssize_t>(axes)}),
-                          flags(outside), flags(no_data));
+    return py::make_tuple(value, sigma, slope, outside, no_data, beyond);
 }
 
-/// The remark of the point that lies furthest outside, and how many do; nothing when all lie inside.
-py::object outside_remark(const ForceTable& table, const py::sequence& columns) {
+/// The remark of the point that lies furthest outside, and how many do.
+py::str outside_remark(const ForceTable& table, const py::sequence& columns) {
     const Points points(table, columns);
-    if (points.inside(table)) {
-        return py::none();
-    }
     const std::size_t rows = points.rows(), axes = table.axes().size();
     std::size_t count = 0, worst = 0;
     double furthest = 0;

@@ -157,29 +157,30 @@ class Table:
         # One number stands for all points by itself.
         return [(one if one.size == 1 else numpy.broadcast_to(one, shape)).reshape(-1) for one in numbers], shape
 
-    def _look(self, points, held):
-        """A column of numbers for each axis, and the shape of the points."""
+    def _look(self, points, held, how):
+        """What `how` finds at the points, and the shape of these; says whether some lie outside."""
         columns, shape = self._points(points, held)
-        if (remark := self._native.outside_remark(columns)) is not None:
-            say([(0, remark)], 4)
-        return columns, shape
+        *found, outside = how(columns)
+        if outside:
+            say([(0, self._native.outside_remark(columns))], 4)
+        return found, shape
+
+    def _slopes(self, slope, shape):
+        return {axis[0]: _shaped(slope[:, k], shape) for k, axis in enumerate(self._native.axes)}
 
     def __call__(self, points=None, **held):
-        columns, shape = self._look(points, held)
-        return _shaped(self._native.values(columns, False)[0], shape)
+        (value, _), shape = self._look(points, held, lambda columns: self._native.values(columns, False))
+        return _shaped(value, shape)
 
     def slopes(self, points=None, **held):
         """{axis: d value / d axis}, SI."""
-        columns, shape = self._look(points, held)
-        slope = self._native.values(columns, True)[1]
-        return {axis[0]: _shaped(slope[:, k], shape) for k, axis in enumerate(self._native.axes)}
+        (_, slope), shape = self._look(points, held, lambda columns: self._native.values(columns, True))
+        return self._slopes(slope, shape)
 
     def at(self, points=None, **held):
         """Value, standard deviation, slopes, and whether each point lies outside or has no data around: Values."""
-        columns, shape = self._look(points, held)
-        value, sigma, slope, outside, no_data = self._native.at(columns)
-        slopes = {axis[0]: _shaped(slope[:, k], shape) for k, axis in enumerate(self._native.axes)}
-        return Values(_shaped(value, shape), _shaped(sigma, shape), slopes, _shaped(outside, shape),
+        (value, sigma, slope, outside, no_data), shape = self._look(points, held, self._native.at)
+        return Values(_shaped(value, shape), _shaped(sigma, shape), self._slopes(slope, shape), _shaped(outside, shape),
                       _shaped(no_data, shape))
 
     def __repr__(self):

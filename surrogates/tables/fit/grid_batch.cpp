@@ -42,10 +42,12 @@ inline __attribute__((always_inline)) void transpose(Four (&rows)[4]) {
 }
 
 /// `count` up to a multiple of four has been filled in.
+template <bool with_slope>
 inline __attribute__((always_inline)) void polynomials(const Spots& s, std::size_t count, double* value,
                                                        double* slope) {
     for (std::size_t i = 0; i < count; i += 4) {
-        Four p[4], d[4];
+        Four p[4];
+        [[maybe_unused]] Four d[4];
         for (std::size_t q = 0; q < 4; ++q) {
             const double* c = s.cell[i + q];
             const double at = s.v[i + q];
@@ -56,14 +58,16 @@ inline __attribute__((always_inline)) void polynomials(const Spots& s, std::size
             load(c2, c + 8);
             load(c3, c + 12);
             p[q] = c0 + v * (c1 + v * (c2 + v * c3));
-            d[q] = c1 + v * (2 * c2 + 3 * v * c3);
+            if constexpr (with_slope) {
+                d[q] = c1 + v * (2 * c2 + 3 * v * c3);
+            }
         }
         transpose(p);
         Four u;
         load(u, &s.u[i]);
         const Four result = p[0] + u * (p[1] + u * (p[2] + u * p[3]));
         __builtin_memcpy(value + i, &result, sizeof result);
-        if (slope != nullptr) {
+        if constexpr (with_slope) {
             transpose(d);
             FourMasks held_u, held_v;
             __builtin_memcpy(&held_u, &s.held_u[i], sizeof held_u);
@@ -80,6 +84,15 @@ inline __attribute__((always_inline)) void polynomials(const Spots& s, std::size
             __builtin_memcpy(slope + 2 * i, &first, sizeof first);
             __builtin_memcpy(slope + 2 * i + 4, &second, sizeof second);
         }
+    }
+}
+
+inline __attribute__((always_inline)) void polynomials(const Spots& s, std::size_t count, double* value,
+                                                       double* slope) {
+    if (slope != nullptr) {
+        polynomials<true>(s, count, value, slope);
+    } else {
+        polynomials<false>(s, count, value, slope);
     }
 }
 

@@ -63,6 +63,17 @@ def test_vtk_objects_are_the_same_memory(program):
     assert blocks.GetNumberOfBlocks() == len(underbody.read(FIELD))
 
 
+def test_pyvista_takes_the_zones(program):
+    pytest.importorskip("vtkmodules", reason="skipped: the Debian package python3-vtk9 is not installed")
+    pyvista = pytest.importorskip("pyvista", reason="skipped: PyVista is not installed (Debian 12 has no package of it)")
+    field = underbody.read(FIELD)
+    zone = field.zones[0]
+    wrapped = pyvista.wrap(zone.vtk)
+    assert wrapped.n_points == len(zone.points) and numpy.shares_memory(wrapped.points, zone.points)
+    assert (wrapped["pressure"] == zone["pressure"]).all()
+    assert pyvista.wrap(field.vtk).keys() == [one.name for one in field]
+
+
 def test_looking_does_not_change_the_field(program):
     field = underbody.read(FIELD)
     before = underbody.loads(field, symmetry="y")
