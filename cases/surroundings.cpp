@@ -51,7 +51,9 @@ struct Wanted {
     const char* package;
     std::vector<const char*> programs;  ///< the first is the main one; all are needed
     std::vector<std::string> arguments;
-    const char* version;  ///< the expression whose first group is the version
+    const char* version;            ///< the expression whose first group is the version
+    const char* refusal = nullptr;  ///< what it says instead where it is installed and cannot be used
+    const char* set_up = nullptr;   ///< what to do then
 };
 
 const std::vector<Wanted>& wanted() {
@@ -69,7 +71,9 @@ const std::vector<Wanted>& wanted() {
          "slurm-client",
          {"sbatch", "squeue", "scancel"},
          {"--version"},
-         number},
+         number,
+         "configuration source",
+         "the cluster's slurm.conf, in /etc/slurm or named by SLURM_CONF"},
         {"xvfb", "pictures of fields where there is no display: views, study run", "xvfb", {"Xvfb"}, {}, number},
         {"cc", "FMUs with a binary for Linux: export --format fmu", "gcc libc6-dev", {"cc"}, {"--version"}, number},
         {"mingw",
@@ -111,6 +115,10 @@ Surrounding look_for(const Wanted& want, core::Progress& progress) {
         const std::string said = said_by(result.path, want.arguments, progress);
         if (std::regex_search(said, match, std::regex(want.version))) {
             result.version = match[1];
+        } else if (want.refusal != nullptr && said.find(want.refusal) != std::string::npos) {
+            result.found = false;
+            result.note = result.path + " is here, but not set up";
+            result.get = want.set_up;
         }
     }
     return result;

@@ -58,6 +58,18 @@ TEST(Doctor, FindsWhatIsThereWithItsVersionAndSaysHowToGetTheRest) {
     }
 }
 
+TEST(Doctor, SlurmWithoutAClusterIsNotHere) {
+    const core::TemporaryFolder folder;
+    for (const char* name : {"sbatch", "squeue", "scancel"}) {
+        add_program(folder.path(), name, std::string(name) + ": fatal: Could not establish a configuration source");
+    }
+    const auto run = run_underbody({"doctor", "--json"}, folder.path(), {{"PATH", folder.path().string()}});
+    const auto slurm = part(nlohmann::json::parse(run.output), "slurm");
+    EXPECT_FALSE(slurm["found"].get<bool>());
+    EXPECT_EQ(slurm["note"], (folder.path() / "sbatch").string() + " is here, but not set up");
+    EXPECT_THAT(slurm["get"].get<std::string>(), testing::HasSubstr("slurm.conf"));
+}
+
 TEST(Doctor, AProgramThatNeverAnswersIsThereWithoutAVersion) {
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "octave-cli", "#!/bin/sh\nexec /bin/sleep 60\n");
