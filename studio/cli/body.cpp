@@ -28,7 +28,7 @@ std::string degrees(double radians) {
 }
 
 double positive(const std::string& text, const char* unit, const char* option) {
-    const double value = core::parse_in(text, unit);
+    const double value = option_value(option, text, unit);
     if (!(value > 0) || !std::isfinite(value)) {
         throw core::UsageError("range", std::string(option) + " " + text + " is not positive", {},
                                "the nearest allowed value: above 0");
@@ -62,19 +62,19 @@ std::optional<geometry::Placement> BodyInput::placement() const {
         throw core::UsageError("missing", "--pitch and --roll need --gap", {}, "add --gap 5mm");
     }
     const auto angle = [](const char* option, const std::string& text) {
-        const double value = text.empty() ? 0.0 : core::parse_in(text, "rad");
+        const double value = text.empty() ? 0.0 : option_value(option, text, "rad");
         if (core::parse_number(text) && std::abs(value) > 1) {
             throw core::UsageError("range", std::string(option) + " " + text + " is " + degrees(value) + " deg", {},
                                    "a bare number is in radians: write " + text + "deg");
         }
         return value;
     };
-    return geometry::Placement{core::parse_in(gap, "m"), angle("--pitch", pitch), angle("--roll", roll)};
+    return geometry::Placement{option_value("--gap", gap, "m"), angle("--pitch", pitch), angle("--roll", roll)};
 }
 
 std::string BodyInput::doubt(const geometry::SurfaceMesh& body) const {
     const geometry::Box box = geometry::bounding_box(body);
-    const double length = box.upper.x - box.lower.x, height = core::parse_in(gap, "m");
+    const double length = box.upper.x - box.lower.x, height = option_value("--gap", gap, "m");
     if (!core::parse_number(gap) || height < 2 * length) {
         return {};
     }
@@ -245,8 +245,8 @@ int make_body(const MakeOptions& o, Shell& shell) {
         options.underside_up_to = positive(o.area_up_to, "m", "--area-up-to");
     }
     if (!o.ballast.empty()) {
-        options.ballast =
-            geometry::BallastWish{o.ballast, core::parse_in(o.trim_pitch, "rad"), core::parse_in(o.trim_roll, "rad")};
+        options.ballast = geometry::BallastWish{o.ballast, option_value("--trim-pitch", o.trim_pitch, "rad"),
+                                                option_value("--trim-roll", o.trim_roll, "rad")};
     }
     for (const auto& assignment : o.set) {
         options.set.push_back(name_and_value("--set", assignment));

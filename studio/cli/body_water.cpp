@@ -10,6 +10,7 @@
 #include "geometry/cases/flow_domain.h"
 #include "geometry/water/added_mass.h"
 #include "studio/cli/body_parts.h"
+#include "studio/cli/option_value.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -31,11 +32,11 @@ std::vector<double> gaps_of(const AddedMassCommand& o) {
     const auto colon = o.gap.find(':');
     if (colon == std::string::npos) {
         for (const std::string_view part : core::split(o.gap, ',')) {
-            gaps.push_back(core::parse_in(part, "m"));
+            gaps.push_back(option_value("--gap", std::string(part), "m"));
         }
     } else {
-        const double low = core::parse_in(o.gap.substr(0, colon), "m"),
-                     high = core::parse_in(o.gap.substr(colon + 1), "m");
+        const double low = option_value("--gap", o.gap.substr(0, colon), "m"),
+                     high = option_value("--gap", o.gap.substr(colon + 1), "m");
         if (!(low > 0 && high > low) || o.count < 2) {
             throw core::UsageError("range", "--gap " + o.gap + " is no range of gaps", {},
                                    "for example 1mm:100mm, with --count 2 or more");
@@ -64,7 +65,7 @@ int added_mass_table(const AddedMassCommand& o, Shell& shell) {
     const geometry::Body body = geometry::read_body(o.shape, reading, shell.progress());
     geometry::AddedMassOptions options;
     options.density = reading.density;
-    options.placement = geometry::Placement{0, core::parse_in(o.pitch, "rad"), 0};
+    options.placement = geometry::Placement{0, option_value("--pitch", o.pitch, "rad"), 0};
     options.reference = body.trim ? body.trim->centre_of_gravity : body.mass.centroid;
     const geometry::AddedMassSweep sweep =
         body.shape ? geometry::added_mass_against_gap(*body.shape, gaps, o.panels, options, shell.progress())
@@ -134,11 +135,11 @@ int write_domain(DomainCommand& o, Shell& shell) {
     options.panels = 0;
     const geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
     o.flow.placement = *placement;
-    o.flow.speed = core::parse_in(o.speed, "m/s");
-    o.flow.kinematic_viscosity = core::parse_in(o.viscosity, "m^2/s");
+    o.flow.speed = option_value("--speed", o.speed, "m/s");
+    o.flow.kinematic_viscosity = option_value("--viscosity", o.viscosity, "m^2/s");
     o.flow.density = options.density;
     o.flow.half = !o.whole;
-    o.flow.jet_flow = core::parse_in(o.jet, "m^3/s");
+    o.flow.jet_flow = option_value("--jet-flow", o.jet, "m^3/s");
     const geometry::FlowDomain domain = geometry::flow_domain(body.mesh, o.flow);
     const bool blocks = o.solver == "openfoam" && (o.mesher.empty() ? body.shape.has_value() : o.mesher == "blocks");
     if (o.flow.jet_flow != 0 && !blocks) {

@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/model.h"
@@ -35,8 +36,8 @@ struct ControlArguments {
     bool no_velocity = false, compare = false;
 };
 
-double quantity(const std::string& text, const char* unit, double fallback) {
-    return text.empty() ? fallback : core::parse_in(text, unit);
+double quantity(const char* option, const std::string& text, const char* unit, double fallback) {
+    return text.empty() ? fallback : option_value(option, text, unit);
 }
 
 LoopDesign design_for(const ControlArguments& a, const LoopOptions& o) {
@@ -142,14 +143,14 @@ int run_control(const ControlArguments& a, Shell& shell) {
     const std::vector<std::string> warnings = show_table_warnings(shell, model, held);
     const SeparatedPlant plant = separate(model, held);
     shell.show(plant.remarks);
-    ControlLaw law = hold_at(core::parse_in(a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
-    law.limit = quantity(a.limit, "N", INFINITY);
+    ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
+    law.limit = quantity("--limit", a.limit, "N", INFINITY);
     LoopOptions o;
-    o.step = core::parse_in(a.step, "s");
-    o.duration = core::parse_in(a.duration, "s");
-    o.actuator_lag = quantity(a.lag, "s", 0);
-    o.gap_noise = quantity(a.gap_noise, "m", 0);
-    o.velocity_noise = quantity(a.velocity_noise, "m/s", 0);
+    o.step = option_value("--step", a.step, "s");
+    o.duration = option_value("--for", a.duration, "s");
+    o.actuator_lag = quantity("--lag", a.lag, "s", 0);
+    o.gap_noise = quantity("--gap-noise", a.gap_noise, "m", 0);
+    o.velocity_noise = quantity("--velocity-noise", a.velocity_noise, "m/s", 0);
     o.seed = a.seed;
     o.velocity_measured = !a.no_velocity;
     o.feedback = a.feedback == "measured" && !a.no_velocity ? Feedback::measured : Feedback::estimated;
@@ -157,7 +158,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
         throw core::UsageError("name", "--feedback does not know '" + a.feedback + "'", {}, "measured or estimated");
     }
     if (!a.disturbance.empty()) {
-        const double constant = core::parse_in(a.disturbance, "N");
+        const double constant = option_value("--disturbance", a.disturbance, "N");
         o.disturbance = [constant](double) { return constant; };
     }
     o.gap = law.reference_gap;

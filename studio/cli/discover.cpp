@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/discovery/discovery.h"
@@ -125,7 +126,7 @@ int study_measurements(Shell& shell, const DiscoverArguments& arguments, const d
 /// A raw log to forces at set points.
 int reduce(Shell& shell, const DiscoverArguments& arguments) {
     discovery::LoadCellOptions options;
-    options.settle = core::parse_in(arguments.settle, "s");
+    options.settle = option_value("--settle", arguments.settle, "s");
     options.without_thrust = arguments.without_thrust;
     const discovery::LoadCellReduction reduction =
         discovery::reduce_load_cell(core::read_csv(std::filesystem::path(arguments.log)), options);
@@ -273,7 +274,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
         const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
         discovery::DiscoverOptions options;
-        options.horizon = core::parse_in(arguments->horizon, "s");
+        options.horizon = option_value("--horizon", arguments->horizon, "s");
         options.seed = arguments->seed;
         options.placebo_twins = arguments->placebo;
         options.candidates = arguments->candidates;

@@ -15,6 +15,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -120,8 +121,8 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
     if (!a.poles.empty()) {
         options.poles = parse_poles(a.poles);
     }
-    options.gap_sigma = a.gap_noise.empty() ? 0 : core::parse_in(a.gap_noise, "m");
-    options.velocity_sigma = a.velocity_noise.empty() ? 0 : core::parse_in(a.velocity_noise, "m/s");
+    options.gap_sigma = a.gap_noise.empty() ? 0 : option_value("--gap-noise", a.gap_noise, "m");
+    options.velocity_sigma = a.velocity_noise.empty() ? 0 : option_value("--velocity-noise", a.velocity_noise, "m/s");
     const estimator::Estimation result = estimator::estimate(model, data, options, shell.progress());
     shell.show(result.remarks);
     std::string surfaces_text;

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
+#include "studio/cli/option_value.h"
 
 namespace underbody::studio {
 
@@ -44,7 +45,7 @@ postproc::ReadOptions FieldOptions::read_options() const {
     options.companion = mesh;
     options.base = base;
     if (!time.empty()) {
-        options.time = core::parse_in(time, "s");
+        options.time = option_value("--time", time, "s");
     }
     for (const auto& text : units) {
         const auto equals = text.rfind('=');

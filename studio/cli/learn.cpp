@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/measurements.h"
@@ -115,9 +116,10 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
         largest =
             std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));
     }
-    o.input_sigma = a.input_sigma.empty() ? std::max(0.5 * largest, 1e-4) : core::parse_in(a.input_sigma, "N");
-    o.duration = a.duration.empty() ? o.duration : core::parse_in(a.duration, "s");
-    o.interval = a.interval.empty() ? o.interval : core::parse_in(a.interval, "s");
+    o.input_sigma =
+        a.input_sigma.empty() ? std::max(0.5 * largest, 1e-4) : option_value("--input-sigma", a.input_sigma, "N");
+    o.duration = a.duration.empty() ? o.duration : option_value("--for", a.duration, "s");
+    o.interval = a.interval.empty() ? o.interval : option_value("--every", a.interval, "s");
     if (!a.auxiliaries.empty()) {
         if (a.method == "dmdc") {
             throw core::UsageError("range", "--method dmdc has no auxiliary variables", {},
@@ -144,9 +146,9 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
         if (parts.size() != 3) {
             throw core::UsageError("parse", "--focus wants lower:upper:share", {}, "for instance --focus 0:0.15:0.5");
         }
-        o.focus_lower = core::parse_in(parts[0], "m");
-        o.focus_upper = core::parse_in(parts[1], "m");
-        o.focus_share = core::parse_in(parts[2], "1");
+        o.focus_lower = option_value("--focus", std::string(parts[0]), "m");
+        o.focus_upper = option_value("--focus", std::string(parts[1]), "m");
+        o.focus_share = option_value("--focus", std::string(parts[2]), "1");
     }
     return o;
 }
@@ -201,7 +203,7 @@ bool has_forces(const Layout& layout) {
 /// The model and its peers on motions that none of them has seen.
 void compare(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant,
              const TrainingOptions& training, const RunSplit& split, Learned& out, Shell& shell) {
-    const double step = core::parse_in(a.step, "s"), horizon = core::parse_in(a.horizon, "s");
+    const double step = option_value("--step", a.step, "s"), horizon = option_value("--horizon", a.horizon, "s");
     NamedModels models;
     std::vector<TestMotion> motions;
     if (a.data.empty()) {
@@ -297,12 +299,13 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
         out.moments = moments(set.view(), layout.names(), shell.progress());
     }
     if (by_snapshots(a)) {
-        const double step = core::parse_in(a.step, "s");
+        const double step = option_value("--step", a.step, "s");
         out.model = learn_dmd(
-            a.data.empty() ? snapshot_pairs(plant, training, step, shell.progress())
-                           : snapshot_pairs(motions_from_runs(declared, split.train, core::parse_in(a.horizon, "s"), {},
-                                                              shell.progress()),
-                                            training.auxiliaries, step),
+            a.data.empty()
+                ? snapshot_pairs(plant, training, step, shell.progress())
+                : snapshot_pairs(motions_from_runs(declared, split.train, option_value("--horizon", a.horizon, "s"), {},
+                                                   shell.progress()),
+                                 training.auxiliaries, step),
             a.order);
     } else {
         learn_from_samples(a, plant, training, layout, options, out);

@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/linear/trim_error.h"
@@ -273,10 +274,11 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
             (pole.imag() != 0 ? (pole.imag() > 0 ? " + " : " - ") + core::format_number(std::abs(pole.imag()), 5) + " i"
                               : "");
     }
-    double offset = a.friction_offset.empty() ? model.vehicle.base_half_width : core::parse_in(a.friction_offset, "m");
+    double offset = a.friction_offset.empty() ? model.vehicle.base_half_width
+                                              : option_value("--friction-offset", a.friction_offset, "m");
     offset = std::isnan(offset) ? 0 : offset;
     const dynamics::GammaChart chart =
-        dynamics::gamma_chart(c, *layout, speed, core::parse_in(a.sideslip, "rad"), friction, offset);
+        dynamics::gamma_chart(c, *layout, speed, option_value("--sideslip", a.sideslip, "rad"), friction, offset);
     if (!a.gamma_chart.empty()) {
         write_picture(dynamics::gamma_figure(chart), a.gamma_chart);
     }

@@ -102,7 +102,7 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
                 "usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {},
                 core::did_you_mean(part, names));
         }
-        point[k] = known ? *known : core::parse_in(part, "m");
+        point[k] = known ? *known : option_value("--reference", part, "m");
     }
     return point;
 }
@@ -537,7 +537,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     const int verdict =
-        given.check.empty() ? static_cast<int>(done) : check(shell, cases, core::parse_in(given.check, "1"));
+        given.check.empty() ? static_cast<int>(done) : check(shell, cases, option_value("--check", given.check, "1"));
     core::Problems notes;
     if (given.mean) {
         cases = postproc::means_in_time(cases, notes);

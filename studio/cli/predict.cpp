@@ -11,6 +11,7 @@
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 
@@ -34,7 +35,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
     const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
     dynamics::PredictOptions options;
-    options.horizon = core::parse_in(a.horizon, "s");
+    options.horizon = option_value("--horizon", a.horizon, "s");
     const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
     shell.show(prediction.remarks);
     shell.hand_over("prediction", [&] { return prediction.table; });

@@ -14,6 +14,7 @@
 #include "postproc/loads/loads.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 
 namespace underbody::studio {
@@ -68,7 +69,7 @@ core::Table look(const postproc::Field& field, const ProbeArguments& given, Shel
         gap.base = given.base;
         gap.stations = given.gap;
         if (!given.density.empty()) {
-            gap.density = core::parse_in(given.density, "kg/m^3");
+            gap.density = option_value("--density", given.density, "kg/m^3");
         }
         return postproc::gap_flow(field, gap, shell.progress());
     }
@@ -154,7 +155,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         auto field = shell.read_field(o->file, read);
         shell.show(field.problems);
         const auto density =
-            o->density.empty() ? std::nullopt : std::optional<double>(core::parse_in(o->density, "kg/m^3"));
+            o->density.empty() ? std::nullopt : std::optional<double>(option_value("--density", o->density, "kg/m^3"));
         if (!postproc::bring_to_pascal(field, density) && o->gap > 0) {
             shell.show_warning(o->file +
                                ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");

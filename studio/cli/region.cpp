@@ -15,6 +15,7 @@
 #include "studio/cli/feedback_options.h"
 #include "studio/cli/force_notes.h"
 #include "studio/cli/model_options.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/region_loop.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
@@ -81,7 +82,7 @@ dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Mod
     }
     options.columns = static_cast<std::size_t>(*columns);
     options.rows = static_cast<std::size_t>(*rows);
-    options.duration = core::parse_in(a.duration, "s");
+    options.duration = option_value("--for", a.duration, "s");
     for (const core::NamedValue& value :
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         options.held.set(value.name, value.value);
@@ -93,7 +94,7 @@ dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Mod
     }
     close_loop(a, model, options);
     if (!a.escape.empty()) {
-        options.escape_gap = core::parse_in(a.escape, "m");
+        options.escape_gap = option_value("--escape", a.escape, "m");
     }
     return options;
 }

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/force_notes.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/estimator/control/loop_region.h"
@@ -52,9 +53,9 @@ ClosedLoop loop_of(const RegionLoopOptions& a, const dynamics::Model& model, con
                 gains.limit > 0 ? gains.limit : INFINITY};
     LoopOptions& o = loop.options;
     o.duration = options.duration;
-    o.step = a.step.empty() ? 0.02 : core::parse_in(a.step, "s");
-    o.gap_noise = a.gap_noise.empty() ? 0 : core::parse_in(a.gap_noise, "m");
-    o.velocity_noise = a.velocity_noise.empty() ? 0 : core::parse_in(a.velocity_noise, "m/s");
+    o.step = a.step.empty() ? 0.02 : option_value("--step", a.step, "s");
+    o.gap_noise = a.gap_noise.empty() ? 0 : option_value("--gap-noise", a.gap_noise, "m");
+    o.velocity_noise = a.velocity_noise.empty() ? 0 : option_value("--velocity-noise", a.velocity_noise, "m/s");
     o.seed = seed;
     o.velocity_measured = !a.no_velocity;
     o.feedback = a.feedback_on == "measured" ? Feedback::measured : Feedback::estimated;

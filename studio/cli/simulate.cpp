@@ -15,6 +15,7 @@
 #include "studio/cli/force_notes.h"
 #include "studio/cli/model_options.h"
 #include "studio/cli/motion_start.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/plant/heave.h"
@@ -190,12 +191,12 @@ Job job_of(const SimulateArguments& a, Shell& shell) {
     if (!a.hold.empty()) {
         job.hold = hold_of(a.hold);
     }
-    job.options.duration = core::parse_in(a.duration, "s");
-    job.options.output_step = a.step.empty() ? 0.0 : core::parse_in(a.step, "s");
+    job.options.duration = option_value("--for", a.duration, "s");
+    job.options.output_step = a.step.empty() ? 0.0 : option_value("--step", a.step, "s");
     job.options.tolerance = a.tolerance;
     job.options.stop_at_contact = a.until_contact;
     job.options.stop_at_equilibrium = a.until_settled;
-    job.options.escape_gap = a.escape.empty() ? 0.0 : core::parse_in(a.escape, "m");
+    job.options.escape_gap = a.escape.empty() ? 0.0 : option_value("--escape", a.escape, "m");
     if (!(job.options.duration > 0) || job.options.output_step < 0 || !(a.tolerance > 0) || a.tolerance > 0.1) {
         throw core::UsageError("range", "--for must be positive, --step not negative, --tolerance between 0 and 0.1");
     }

@@ -17,6 +17,7 @@
 #include "postproc/probe/probe.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/field_options.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 
@@ -220,8 +221,9 @@ void draw_case(Shell& shell, const ViewsArguments& given, const postproc::Field&
 
 /// Pictures show pascal: what a file has over density needs one.
 void use_density(Shell& shell, const ViewsArguments& given, postproc::Field& field) {
-    const auto density =
-        given.density.empty() ? std::nullopt : std::optional<double>(core::parse_in(given.density, "kg/m^3"));
+    const auto density = given.density.empty()
+                             ? std::nullopt
+                             : std::optional<double>(option_value("--density", given.density, "kg/m^3"));
     if (!postproc::bring_to_pascal(field, density)) {
         shell.show_warning(field.files.front() + ": pressure is over density here: --density \"998 kg/m^3\" draws it");
     }

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
+#include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/wording.h"
@@ -90,8 +91,8 @@ public:
             setup_ = dynamics::read_measurement_setup(arguments.data);
         }
         options_.false_alarms_per_day = arguments.per_day;
-        options_.learn = core::parse_in(arguments.learn, "s");
-        after_ = core::parse_in(arguments.after, "s");
+        options_.learn = option_value("--learn", arguments.learn, "s");
+        after_ = option_value("--after", arguments.after, "s");
         options_.noise = setup_.noise;
         options_.conditions = setup_.conditions;
         begin();

@@ -137,6 +137,20 @@ TEST(CommandLine, AValueWithAWrongUnitIsAWrongCommandLine) {
         EXPECT_EQ(run.exit_code, 2);
         EXPECT_NE(run.errors.find("'" + std::string(density) + "'"), std::string::npos) << run.errors;
     }
+    // It says which option: a command has several in seconds and in metres.
+    const std::string study = (test::source_folder() / "cases" / "evie").string();
+    const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+        {{"simulate", study + "/glide.toml", "--from", "gap=4 mm", "--for"}, "--for"},
+        {{"simulate", study + "/glide.toml", "--from", "gap=4 mm", "--step"}, "--step"},
+        {{"region", study + "/glide.toml", "--escape"}, "--escape"},
+        {{"body", study + "/shapes/ellipse.toml", "--gap"}, "--gap"},
+        {{"predict", study + "/heave/model.toml", "--data", study + "/heave", "--horizon"}, "--horizon"}};
+    for (auto [words, option] : wrong) {
+        words.emplace_back("5 kg");
+        const auto run = run_underbody(words, folder.path());
+        EXPECT_EQ(run.exit_code, 2) << option;
+        EXPECT_THAT(run.errors, HasSubstr("wrong use: " + option + ": '5 kg': unit 'kg' has another dimension"));
+    }
 }
 
 // ---- files that cannot be used ----

@@ -1,4 +1,5 @@
 """Fields, force tables, models and studies as objects; what they can do are commands with the first word given."""
+import collections.abc
 import os
 
 import numpy
@@ -11,7 +12,13 @@ _TABLE_OPTIONS = ("quantity", "where", "axes", "kind", "range")
 
 
 def _path(value):
-    return value.__underbody_path__() if hasattr(value, "__underbody_path__") else os.fspath(value)
+    if hasattr(value, "__underbody_path__"):
+        return value.__underbody_path__()
+    try:
+        return os.fspath(value)
+    except TypeError:
+        raise _errors.wrong_use(f"{value!r} ({type(value).__name__}) is no path",
+                                "a path is a str or a pathlib.Path") from None
 
 
 class Field:
@@ -69,6 +76,13 @@ class Field:
         return f"<Field {self.files[0] if self.files else ''}, {self.format}, {len(self.zones)} zones>"
 
 
+def _names(argument, value):
+    given = [value] if isinstance(value, str) else value
+    if not isinstance(given, collections.abc.Iterable) or not all(isinstance(one, str) for one in given):
+        raise _errors.wrong_use(f"{argument}={value!r} is neither a name nor a list of names")
+    return list(given)
+
+
 def read(path, *, zones=(), arrays=(), length_unit="", unit=None, mesh="", time="", cgns_base="",
          surfaces_only=False, progress=None):
     """Reads a CFD file of any known format (by its content) into a Field.
@@ -80,7 +94,9 @@ def read(path, *, zones=(), arrays=(), length_unit="", unit=None, mesh="", time=
     Raises InputError when the file is damaged or unknown, with file and line or byte.
     """
     path = _path(path)
-    names = [[value] if isinstance(value, str) else list(value) for value in (zones, arrays)]
+    names = [_names("zones", zones), _names("arrays", arrays)]
+    if not isinstance(unit or {}, collections.abc.Mapping):
+        raise _errors.wrong_use(f"unit={unit!r} is no dict", 'for instance {"Pressure": "Pa"}')
     units = [f"{name}={value}" for name, value in (unit or {}).items()]
     native = _underbody.read(path, *names, length_unit, units, _path(mesh) if mesh else "",
                              "" if time in ("", None) else text_of(time), str(cgns_base), surfaces_only, progress)
@@ -148,11 +164,17 @@ class Table:
                 return [points], points.shape
             return list(points.reshape(-1, points.shape[-1] if points.ndim else 1).T), points.shape[:-1]
         units = {name: unit for name, unit, _, _ in axes}
-        columns = {name: _numbers(value, units.get(name, "1")) for name, value in held.items()}
+        columns = {name: _column(name, value, units.get(name, "1")) for name, value in held.items()}
         firsts = [(name, float(one.flat[0]) if one.size else 0.0) for name, one in columns.items()]
         point, remarks = self._native.held_point(firsts)
         say([(0, text) for text in remarks], 5)
-        shape = numpy.broadcast_shapes(*(one.shape for one in columns.values()))
+        try:
+            shape = numpy.broadcast_shapes(*(one.shape for one in columns.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {one.shape}" for name, one in columns.items())
+            raise _errors.wrong_use(f"the arrays are of different shapes: {shapes}",
+                                    "give one shape, or a single number for an axis that does not vary",
+                                    "shape") from None
         numbers = [columns.get(name, numpy.array(point[k])) for k, (name, _, _, _) in enumerate(axes)]
         # One number stands for all points by itself.
         return [(one if one.size == 1 else numpy.broadcast_to(one, shape)).reshape(-1) for one in numbers], shape
@@ -195,6 +217,17 @@ def _numbers(value, unit):
     if isinstance(value, (list, tuple)):
         return numpy.array([_numbers(one, unit) for one in value], dtype=float)
     return numpy.asarray(value, dtype=float)
+
+
+def _column(name, value, unit):
+    """The same for an axis, which a mistake is told with."""
+    try:
+        return _numbers(value, unit)
+    except _errors.Error as error:
+        raise _errors.wrong_use(f"{name}: {error.problem}", error.hint, error.kind) from None
+    except (TypeError, ValueError):
+        raise _errors.wrong_use(f"{name}: {value!r} is no number, text with a unit or array of numbers", kind="parse") \
+            from None
 
 
 class TableCommand(Command):

@@ -21,6 +21,9 @@ FIELD = "fields/ellipse-h5-p0.csv"
     (["loads", FIELD, "--density", "5 mm"], lambda: underbody.loads(FIELD, density="5 mm")),
     (["loads", FIELD, "--fluid", "water"], lambda: underbody.loads(FIELD, fluid="water")),
     (["loads", FIELD, "--zones", "hul"], lambda: underbody.loads(FIELD, zones=["hul"])),
+    (["body", "shapes/ellipse.toml", "--gap", "5 kg"], lambda: underbody.body("shapes/ellipse.toml", gap="5 kg")),
+    (["simulate", "glide.toml", "--from", "gap=4 mm", "--for", "5 kg"],
+     lambda: underbody.simulate("glide.toml", start={"gap": "4 mm"}, duration="5 kg")),
     (["body", "shapes/ellipse.toml", "--gap", "-1"], lambda: underbody.body("shapes/ellipse.toml", gap=-1)),
     (["simulate", "glide.toml", "--from", "gab=1"], lambda: underbody.simulate("glide.toml", start={"gab": 1})),
     (["simulate", "glide.toml", "--from", "gap=3 s"], lambda: underbody.simulate("glide.toml", start={"gap": "3 s"})),
@@ -82,6 +85,23 @@ def test_arguments_that_do_not_exist(program):
         underbody.loads(FIELD, density=object())
     with pytest.raises(underbody.UsageError, match="a range has two ends"):
         underbody.region("glide.toml", axes={"gap": (0, 1, 2)})
+
+
+def test_values_that_are_none(program):
+    table = underbody.table("tables/base.csv", quantity="lift_force", axes="gap,pitch")
+    with pytest.raises(underbody.UsageError) as raised:
+        table(gap="5 mm", pitch="1 m")
+    assert str(raised.value) == program.sentence("table", "at", "tables/base.csv", "gap=5 mm", "pitch=1 m")
+    with pytest.raises(underbody.UsageError, match=r"different shapes: gap \(3,\), pitch \(2,\)"):
+        table(gap=[0.003, 0.004, 0.005], pitch=[0, 0.01])
+    with pytest.raises(underbody.UsageError, match="gap: .* is no number"):
+        table(gap={"from": 1}, pitch=0)
+    with pytest.raises(underbody.UsageError, match=r"5 \(int\) is no path"):
+        underbody.read(5)
+    with pytest.raises(underbody.UsageError, match="zones=5 is neither"):
+        underbody.read(FIELD, zones=5)
+    with pytest.raises(underbody.UsageError, match="unit='Pa' is no dict"):
+        underbody.read(FIELD, unit="Pa")
 
 
 def test_warnings_are_pythons(program):
