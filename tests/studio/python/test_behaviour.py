@@ -87,6 +87,7 @@ def test_arguments_that_do_not_exist(program):
         underbody.region("glide.toml", axes={"gap": (0, 1, 2)})
 
 
+@pytest.mark.filterwarnings("ignore::underbody.UnderbodyWarning")
 def test_values_that_are_none(program):
     table = underbody.table("tables/base.csv", quantity="lift_force", axes="gap,pitch")
     with pytest.raises(underbody.UsageError) as raised:
@@ -164,8 +165,10 @@ def own_time(pid):
 
 
 def test_ctrl_c_stops_within_a_second_of_work(program):
+    # What a shell starts in the background is deaf to Ctrl-C, and so is what that starts.
     running = subprocess.Popen([sys.executable, "-W", "ignore", "-c", LONG], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
+                               stderr=subprocess.PIPE, text=True,
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     assert running.stdout.readline() == "at work\n", running.stderr.read()
     before = own_time(running.pid)
     running.send_signal(signal.SIGINT)
