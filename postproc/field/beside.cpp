@@ -37,8 +37,8 @@ std::shared_ptr<const Names> listing(const fs::path& folder) {
     return known;
 }
 
-constexpr std::string_view cfd_endings[] = {".csv",   ".cas",  ".dat", ".msh", ".h5",  ".case",
-                                            ".encas", ".cgns", ".vtp", ".vtu", ".vtm", ".foam"};
+constexpr std::string_view cfd_endings[] = {".csv",  ".cas", ".dat", ".msh", ".h5",  ".case", ".encas",
+                                            ".cgns", ".pvd", ".vtp", ".vtu", ".vtm", ".foam"};
 
 bool is_cfd_name(const std::string& name) {
     std::string plain = name;
@@ -105,7 +105,7 @@ std::string case_stem(const fs::path& file) {
     for (bool cut = true; cut;) {
         cut = false;
         for (const std::string_view ending : {".gz", ".csv", ".cas", ".dat", ".msh", ".h5", ".case", ".encas", ".cgns",
-                                              ".vtp", ".vtu", ".vtm", ".foam"}) {
+                                              ".pvd", ".vtp", ".vtu", ".vtm", ".foam"}) {
             if (stem.size() > ending.size() && stem.ends_with(ending)) {
                 stem.resize(stem.size() - ending.size());
                 cut = true;

@@ -12,7 +12,7 @@ namespace underbody::postproc {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> with_times = {"CGNS", "EnSight Gold", "OpenFOAM"};
+constexpr std::array<std::string_view, 4> with_times = {"CGNS", "EnSight Gold", "OpenFOAM", "ParaView collection"};
 constexpr std::array<std::string_view, 2> with_companion = {"Fluent legacy", "Fluent HDF5"};
 
 template <std::size_t size>

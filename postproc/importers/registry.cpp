@@ -9,6 +9,7 @@
     X(fluent_ascii, "text that Fluent exports: nodenumber or cellnumber and columns") \
     X(ensight, ".case or .encas of EnSight Gold with its .geo and variables")         \
     X(cgns, ".cgns of CFX, Fluent, ICEM and others, ADF or HDF5")                     \
+    X(paraview_collection, ".pvd of ParaView: VTK files with their times")            \
     X(vtk_xml, ".vtu, .vtp, .vtm and other XML files of VTK")                         \
     X(vtk_legacy, ".vtk")                                                             \
     X(openfoam, "the folder of an OpenFOAM case")                                     \

@@ -47,7 +47,8 @@ QWidget* FieldsPanel::build_time() {
     time_->setEditable(true);
     time_->setInsertPolicy(QComboBox::NoInsert);
     time_->setAccessibleName("Time");
-    time_->setToolTip("Of files with several times (OpenFOAM, EnSight, CGNS): the one that is shown; empty: the last");
+    time_->setToolTip(
+        "Of files with several times (OpenFOAM, EnSight, CGNS, .pvd): the one that is shown; empty: the last");
     time_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     time_->lineEdit()->setAccessibleName("Time");
     row->addWidget(time_, 1);

@@ -63,6 +63,12 @@ vtkSmartPointer<vtkCellArray> polygons_of(const ElementPart& part) {
 }  // namespace
 
 void settle_sides(Field& field, core::Progress& progress) {
+    const bool any_volume =
+        field.dimension == 3 &&
+        std::any_of(field.zones.begin(), field.zones.end(), [](const Zone& zone) { return zone.volume != nullptr; });
+    if (!any_volume) {
+        return;  // nothing says where the fluid is
+    }
     std::vector<Zone*> zones;
     std::vector<ElementPart> faces;
     for (auto& zone : field.zones) {
