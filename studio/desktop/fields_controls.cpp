@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QShortcut>
 #include <QSignalBlocker>
+#include <QToolButton>
 #include <algorithm>
 
 #include "core/error.h"
@@ -54,7 +55,22 @@ void FieldsPanel::build_controls(QWidget& side) {
     range_->setClearButtonEnabled(true);
     left->addWidget(range_);
     range_shown_ = new QLabel;
-    left->addWidget(range_shown_);
+    keep_range_ = new QToolButton;
+    keep_range_->setText("Keep");
+    keep_range_->setAccessibleName("Keep the range of the colours");
+    keep_range_->setToolTip(
+        "Other cases are shown in this range too, so that equal colours are equal values; clear it above to follow "
+        "what is seen");
+    connect(keep_range_, &QToolButton::clicked, this, [this] {
+        if (range_now_) {
+            desk_.act({"fields",
+                       "range=" + core::format_number((*range_now_)[0]) + ":" + core::format_number((*range_now_)[1])});
+        }
+    });
+    auto* now = new QHBoxLayout;
+    now->addWidget(range_shown_, 1);
+    now->addWidget(keep_range_);
+    left->addLayout(now);
     whole_range_ = new QCheckBox("&whole range of colours");
     whole_range_->setToolTip(
         "Off: colours span the 1st to the 99th hundredth of the values, so that single points at an\n"

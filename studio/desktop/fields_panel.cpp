@@ -11,6 +11,7 @@
 #include <QSplitter>
 #include <QStackedLayout>
 #include <QStyle>
+#include <QToolButton>
 #include <algorithm>
 #include <cmath>
 
@@ -232,6 +233,8 @@ void FieldsPanel::recolour() {
     }
     tint_bodies();
     range = state().fields.range ? state().fields.range : range;
+    range_now_ = range;
+    keep_range_->setEnabled(range && !state().fields.range && array_->currentText() != "(plain)");
     for (const auto& choice : chosen) {
         unit_ = choice.name.empty() ? unit_ : qt(pretty_unit(choice.unit));
     }

@@ -21,6 +21,7 @@ class QLineEdit;
 class QListWidget;
 class QPushButton;
 class QStackedLayout;
+class QToolButton;
 
 namespace underbody::studio {
 
@@ -42,6 +43,8 @@ public:
     void export_table(const std::filesystem::path& path) override;
     /// How many cells show a field that is read.
     [[nodiscard]] std::size_t drawn() const;
+    /// True while a stand-in is seen in the place of very many faces.
+    [[nodiscard]] bool stands_in(std::size_t cell) const { return cells_.at(cell)->scene->stands_in(); }
     /// How many cells show a picture in the place of their surface: their difference to the first, a plane,
     /// streamlines.
     [[nodiscard]] std::size_t pictures() const;
@@ -140,6 +143,8 @@ private:
     QComboBox* array_ = nullptr;
     QLineEdit* range_ = nullptr;
     QLabel* range_shown_ = nullptr;
+    QToolButton* keep_range_ = nullptr;
+    std::optional<std::array<double, 2>> range_now_;  ///< of the colours, given or of what is seen
     QCheckBox* whole_range_ = nullptr;
     QCheckBox* edges_ = nullptr;
     QCheckBox* mirror_ = nullptr;

@@ -154,7 +154,7 @@ void FieldsPanel::read(std::size_t index) {
                 reading.surfaces_only = true;
                 auto field =
                     std::make_shared<const postproc::Field>(postproc::read_field(source.file, reading, progress));
-                const auto prepared = Scene::prepare(field, source.symmetry);
+                const auto prepared = Scene::prepare(field, source.symmetry, progress);
                 const auto sum = sum_of(*field, options, progress);
                 const auto half = postproc::likely_half(*field);
                 return [this, current, index, field, prepared, sum, half] {

@@ -14,6 +14,7 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSettings>
 #include <QStackedWidget>
 #include <QStandardPaths>
@@ -23,6 +24,7 @@
 #include <QToolBar>
 #include <QToolButton>
 #include <QUrl>
+#include <algorithm>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -53,6 +55,20 @@ fs::path log_folder(bool remember) {
                ? fs::path(QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString()) / "logs"
                : fs::path();
 }
+
+/// Workspaces as large as there is room for; in a small window they are scrolled.
+class Rolled : public QScrollArea {
+public:
+    explicit Rolled(QWidget* all) {
+        setWidget(all);
+        setWidgetResizable(true);
+        setFrameShape(QFrame::NoFrame);
+        setFocusPolicy(Qt::NoFocus);
+    }
+    [[nodiscard]] QSize minimumSizeHint() const override {
+        return widget()->minimumSizeHint().boundedTo(QSize(520, 230));
+    }
+};
 
 /// Something that another step of the study makes.
 bool is_missing(const std::exception_ptr& error) {
@@ -106,7 +122,7 @@ MainWindow::MainWindow(bool remember)
     if (remember_) {
         QSettings settings;
         restoreGeometry(settings.value("geometry").toByteArray());
-        restoreState(settings.value("layout").toByteArray());
+        laid_out_ = restoreState(settings.value("layout").toByteArray());
         set_theme(settings.value("theme", "system").toString());
     }
     fill_recent();
@@ -125,7 +141,13 @@ void MainWindow::build_workspaces() {
     banner_ = new Banner(centre);
     column->addWidget(banner_);
     middle_ = new QStackedWidget;
-    column->addWidget(middle_, 1);
+    column->addWidget(new Rolled(middle_), 1);
+    connect(middle_, &QStackedWidget::currentChanged, this, [this](int current) {
+        for (int i = 0; i < middle_->count(); ++i) {  // what is not seen needs no room
+            const auto policy = i == current ? QSizePolicy::Preferred : QSizePolicy::Ignored;
+            middle_->widget(i)->setSizePolicy(policy, policy);
+        }
+    });
     setCentralWidget(centre);
     first_ = new FirstPage(this);
     middle_->addWidget(first_);
@@ -167,8 +189,8 @@ void MainWindow::build_tree() {
     tree_dock_ = new QDockWidget("Study", this);
     tree_dock_->setObjectName("study_dock");
     tree_dock_->setWidget(holder);
+    holder->setMinimumWidth(190);
     addDockWidget(Qt::LeftDockWidgetArea, tree_dock_);
-    resizeDocks({tree_dock_}, {490}, Qt::Horizontal);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
 }
 
@@ -360,6 +382,16 @@ void MainWindow::offer_recovery() {
     for (const auto& log : logs) {
         std::error_code none;
         fs::remove(log, none);
+    }
+}
+
+/// The tree has all its columns where the workspaces leave them room.
+void MainWindow::showEvent(QShowEvent* event) {
+    QMainWindow::showEvent(event);
+    if (!laid_out_) {
+        laid_out_ = true;
+        resizeDocks({tree_dock_}, {std::clamp(width() - middle_->minimumSizeHint().width() - 24, 220, 490)},
+                    Qt::Horizontal);
     }
 }
 

@@ -72,6 +72,7 @@ public:
     std::function<bool(const QString& title, const QString& text, const QString& yes)> ask;
 
 protected:
+    void showEvent(QShowEvent* event) override;
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
@@ -109,6 +110,7 @@ private:
     [[nodiscard]] QString pictures_folder() const;
 
     bool remember_;
+    bool laid_out_ = false;
     QString last_error_;
     QString session_file_;
     Jobs* jobs_ = nullptr;

@@ -16,17 +16,12 @@
 #include <vtkOrientationMarkerWidget.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataNormals.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
-#include <vtkReverseSense.h>
 #include <vtkScalarBarActor.h>
 #include <vtkSphereSource.h>
-#include <vtkStaticCellLocator.h>
 #include <vtkTextProperty.h>
-#include <vtkTransform.h>
-#include <vtkTransformPolyDataFilter.h>
 
 #include <QBuffer>
 #include <QImage>
@@ -38,8 +33,8 @@
 #include <cmath>
 #include <limits>
 
+#include "postproc/views/colours.h"
 #include "studio/desktop/scene_parts.h"
-#include "studio/figures/colour_scale.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -88,26 +83,6 @@ vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
     mapper->UseLookupTableScalarRangeOn();
     mapper->InterpolateScalarsBeforeMappingOn();
     return mapper;
-}
-
-/// The surface seen in a mirror (through the origin where no place was stated), its faces turned so that they still
-/// look outward.
-vtkSmartPointer<vtkPolyData> in_mirror(vtkPolyData* surface, const postproc::MirrorPlane& mirror) {
-    std::array<double, 3> size = {1, 1, 1}, shift = {0, 0, 0};
-    size[static_cast<std::size_t>(mirror.axis)] = -1;
-    shift[static_cast<std::size_t>(mirror.axis)] = 2 * mirror.at.value_or(0);
-    vtkNew<vtkTransform> transform;
-    transform->Translate(shift.data());
-    transform->Scale(size.data());
-    vtkNew<vtkTransformPolyDataFilter> filter;
-    filter->SetInputData(surface);
-    filter->SetTransform(transform);
-    vtkNew<vtkReverseSense> reverse;
-    reverse->SetInputConnection(filter->GetOutputPort());
-    reverse->ReverseCellsOn();
-    reverse->ReverseNormalsOff();
-    reverse->Update();
-    return reverse->GetOutput();
 }
 
 void dress_text(vtkTextProperty& text, int size, bool dark = false) {
@@ -173,6 +148,15 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
             turned();
         }
     });
+    p.before_drawing->SetClientData(&p);
+    p.before_drawing->SetCallback(
+        [](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->choose_drawn(); });
+    p.renderer->AddObserver(vtkCommand::StartEvent, p.before_drawing);
+    p.renderer->SetBackgroundTexture(p.whole_drawn);
+    p.whole_drawn->SetColorModeToDirectScalars();
+    p.rest.setSingleShot(true);
+    p.rest.setInterval(200);
+    QObject::connect(&p.rest, &QTimer::timeout, [&p] { p.ask_for_whole(); });
     vtkNew<vtkPolyDataMapper> dot_mapper;
     dot_mapper->SetInputConnection(p.dot->GetOutputPort());
     p.dot->SetThetaResolution(16);
@@ -189,6 +173,8 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
 
 Scene::~Scene() {
     parts_->hover.stop();
+    parts_->rest.stop();
+    parts_->renderer->RemoveObserver(parts_->before_drawing);
     parts_->widget->removeEventFilter(parts_.get());
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
 }
@@ -196,47 +182,6 @@ Scene::~Scene() {
 QWidget* Scene::widget() const { return parts_->widget; }
 
 const postproc::Field* Scene::field() const { return parts_->field.get(); }
-
-struct Scene::Prepared {
-    std::shared_ptr<const postproc::Field> field;
-    postproc::MirrorPlane mirror;
-    struct Surface {
-        std::size_t zone = 0;
-        vtkSmartPointer<vtkPolyData> surface, mirrored;
-        vtkSmartPointer<vtkStaticCellLocator> locator;  ///< of many faces: a click need not go through all
-    };
-    std::vector<Surface> surfaces;
-};
-
-std::shared_ptr<const Scene::Prepared> Scene::prepare(std::shared_ptr<const postproc::Field> field,
-                                                      const std::string& mirror) {
-    auto prepared = std::make_shared<Prepared>();
-    prepared->field = std::move(field);
-    prepared->mirror = postproc::mirror_plane_from(mirror);
-    for (std::size_t i = 0; i < prepared->field->zones.size(); ++i) {
-        const auto& zone = prepared->field->zones[i];
-        if (!zone.surface || zone.surface->GetNumberOfCells() == 0) {
-            continue;
-        }
-        // Smooth to the eye; points and faces keep their numbers, so that a click finds its value.
-        vtkNew<vtkPolyDataNormals> normals;
-        normals->SetInputData(zone.surface);
-        normals->SplittingOff();
-        normals->ConsistencyOff();
-        normals->Update();
-        Prepared::Surface surface;
-        surface.zone = i;
-        surface.surface = normals->GetOutput();
-        surface.mirrored = prepared->mirror.is_half() ? in_mirror(surface.surface, prepared->mirror) : nullptr;
-        if (surface.surface->GetNumberOfCells() > 50000) {
-            surface.locator = vtkSmartPointer<vtkStaticCellLocator>::New();
-            surface.locator->SetDataSet(surface.surface);
-            surface.locator->BuildLocator();
-        }
-        prepared->surfaces.push_back(std::move(surface));
-    }
-    return prepared;
-}
 
 void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
     Parts& p = *parts_;
@@ -254,11 +199,13 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
     for (const auto& ready : prepared->surfaces) {
         Parts::Surface surface;
         surface.zone = ready.zone;
+        surface.whole = ready.stand_in ? ready.surface : nullptr;
+        surface.whole_mirrored = ready.stand_in ? ready.mirrored : nullptr;
         surface.mapper = new_mapper(p.colours);
-        surface.mapper->SetInputData(ready.surface);
+        surface.mapper->SetInputData(ready.stand_in ? ready.stand_in : ready.surface);
         surface.mirrored_mapper = new_mapper(p.colours);
         if (ready.mirrored) {
-            surface.mirrored_mapper->SetInputData(ready.mirrored);
+            surface.mirrored_mapper->SetInputData(ready.stand_in ? ready.stand_in_mirrored : ready.mirrored);
         }
         surface.actor = vtkSmartPointer<vtkActor>::New();
         surface.actor->SetMapper(surface.mapper);
@@ -280,8 +227,14 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
         p.surfaces.push_back(std::move(surface));
     }
     mirror(p.mirrored);
-    if (refit) {
-        p.renderer->ResetCamera();
+    p.whole.reset();
+    p.whole_of.clear();
+    if (std::any_of(p.surfaces.begin(), p.surfaces.end(), [](const auto& one) { return one.whole != nullptr; })) {
+        p.whole = std::make_unique<WholePicture>();
+    }
+    p.renderer->SetTexturedBackground(false);
+    if (const auto box = refit ? bounds() : std::nullopt) {
+        p.renderer->ResetCamera(box->data());
     }
 }
 
@@ -389,8 +342,10 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     }
     p.colours->SetNumberOfTableValues(256);
     for (int i = 0; i < 256; ++i) {
-        const core::Colour c = both_signs ? diverging(i / 255.0) : viridis(i / 255.0);
-        p.colours->SetTableValue(i, c.red / 255.0, c.green / 255.0, c.blue / 255.0);
+        // Those of the pictures and of the report.
+        const auto c =
+            postproc::colour_at(both_signs ? postproc::ColourMap::diverging : postproc::ColourMap::viridis, i / 255.0);
+        p.colours->SetTableValue(i, c[0], c[1], c[2]);
     }
     p.colours->SetTableRange(lower, upper > lower ? upper : lower + 1);
     if (choice.component >= 0) {
@@ -402,7 +357,7 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     // In a small view the full title would be cut: the name stands beside the views.
     const bool small = p.widget->width() < 520 || p.widget->height() < 260;
     std::string title = small ? pretty_unit(choice.unit) : axis_title(choice.label, choice.unit);
-    if (title.size() > 14) {  // beside the bar there is room for a word
+    if (9.0 * static_cast<double>(title.size()) > 0.14 * p.widget->width()) {  // over the bar there is room for a word
         std::replace(title.begin(), title.end(), ' ', '\n');
     }
     p.bar->SetTitle(title.c_str());
@@ -440,12 +395,6 @@ void Scene::set_ground(bool dark) {
     }
 }
 
-std::optional<std::array<double, 6>> Scene::bounds() const {
-    std::array<double, 6> box{};
-    parts_->renderer->ComputeVisiblePropBounds(box.data());
-    return box[0] <= box[1] ? std::optional(box) : std::nullopt;
-}
-
 void Scene::look_from(const std::string& view, const std::string& forward, const std::string& up,
                       const std::optional<std::array<double, 6>>& box) {
     const auto f = direction(forward, {1, 0, 0});
@@ -474,8 +423,8 @@ void Scene::look_from(const std::string& view, const std::string& forward, const
     camera->SetPosition(from[0], from[1], from[2]);
     camera->SetViewUp(top[0], top[1], top[2]);
     camera->SetParallelProjection(view != "iso");
-    if (box) {
-        parts_->renderer->ResetCamera(box->data());
+    if (const auto all = box ? box : bounds()) {
+        parts_->renderer->ResetCamera(all->data());
     } else {
         parts_->renderer->ResetCamera();
     }

@@ -30,7 +30,8 @@ public:
     struct Prepared;
     /// `mirror`: as LoadsOptions::symmetry ("y", "y=0.1"); empty: none. Safe from any thread.
     static std::shared_ptr<const Prepared> prepare(std::shared_ptr<const postproc::Field> field,
-                                                   const std::string& mirror);
+                                                   const std::string& mirror,
+                                                   core::Progress& progress = core::Progress::none());
 
     /// Shows the surfaces of a field; keeps the camera unless `refit`.
     void show(std::shared_ptr<const Prepared> prepared, bool refit);
@@ -88,6 +89,9 @@ public:
     void tint(const std::vector<bool>& body);
     /// Called while the view is turned by hand, so that those with the same camera follow.
     std::function<void()> on_turn;
+
+    /// Of many faces a stand-in is turned; true while it is what is seen, until the picture of all of them is drawn.
+    [[nodiscard]] bool stands_in() const;
 
     /// PNG bytes of what is seen.
     std::string png();

@@ -16,14 +16,29 @@
 #include <vtkScalarBarActor.h>
 #include <vtkSmartPointer.h>
 #include <vtkSphereSource.h>
+#include <vtkStaticCellLocator.h>
+#include <vtkTexture.h>
 
 #include <QTimer>
 #include <vector>
 
 #include "postproc/loads/mirror_plane.h"
 #include "studio/desktop/scene.h"
+#include "studio/desktop/whole_picture.h"
 
 namespace underbody::studio {
+
+struct Scene::Prepared {
+    std::shared_ptr<const postproc::Field> field;
+    postproc::MirrorPlane mirror;
+    struct Surface {
+        std::size_t zone = 0;
+        vtkSmartPointer<vtkPolyData> surface, mirrored;
+        vtkSmartPointer<vtkPolyData> stand_in, stand_in_mirrored;  ///< of many faces: what is turned
+        vtkSmartPointer<vtkStaticCellLocator> locator;             ///< of many faces: a click need not go through all
+    };
+    std::vector<Surface> surfaces;
+};
 
 struct Scene::Parts : QObject {
     QVTKOpenGLNativeWidget* widget = nullptr;
@@ -41,6 +56,7 @@ struct Scene::Parts : QObject {
         vtkSmartPointer<vtkActor> actor;
         vtkSmartPointer<vtkPolyDataMapper> mirrored_mapper;
         vtkSmartPointer<vtkActor> mirrored;
+        vtkSmartPointer<vtkPolyData> whole, whole_mirrored;  ///< of many faces, for which the mappers draw a stand-in
     };
     std::vector<Surface> surfaces;
     std::vector<bool> seen;
@@ -55,6 +71,20 @@ struct Scene::Parts : QObject {
     vtkNew<vtkSphereSource> dot;
     vtkNew<vtkActor> dot_actor;
 
+    std::unique_ptr<WholePicture> whole;  ///< none where all faces are turned
+    vtkNew<vtkTexture> whole_drawn;
+    vtkNew<vtkCallbackCommand> before_drawing;
+    QTimer rest;
+    std::string whole_of, asked_of;  ///< what the picture of all faces shows; what was asked for last
+
+    /// Shows the picture of all faces where it is that of what is seen; else the stand-in, and asks for it at rest.
+    void choose_drawn();
+    void ask_for_whole();
+    [[nodiscard]] bool visible(const Surface& surface) const {
+        return surface.zone < seen.size() && seen[surface.zone];
+    }
+    [[nodiscard]] WholePicture::Wanted wanted_whole() const;
+
     QPoint mouse;
     /// Clicks and the mouse over the view: while it turns, VTK's style keeps all events of the mouse to itself.
     bool eventFilter(QObject* object, QEvent* event) override;
@@ -68,6 +98,7 @@ struct Scene::Parts : QObject {
 /// The numbers of an array's chosen component (the size of a vector for -1).
 double value_of(vtkDataArray& array, vtkIdType at, int component);
 /// Of the surface; nullptr where it has none.
+vtkDataArray* array_of(vtkPolyData& surface, const postproc::ArrayInfo& info);
 vtkDataArray* array_of(const postproc::Zone& zone, const postproc::ArrayInfo& info);
 
 }  // namespace underbody::studio

@@ -28,12 +28,13 @@ double value_of(vtkDataArray& array, vtkIdType at, int component) {
     return std::sqrt(sum);
 }
 
+vtkDataArray* array_of(vtkPolyData& surface, const postproc::ArrayInfo& info) {
+    return info.on == Location::nodes ? surface.GetPointData()->GetArray(info.name.c_str())
+                                      : surface.GetCellData()->GetArray(info.name.c_str());
+}
+
 vtkDataArray* array_of(const postproc::Zone& zone, const postproc::ArrayInfo& info) {
-    if (!zone.surface) {
-        return nullptr;
-    }
-    return info.on == Location::nodes ? zone.surface->GetPointData()->GetArray(info.name.c_str())
-                                      : zone.surface->GetCellData()->GetArray(info.name.c_str());
+    return zone.surface ? array_of(*zone.surface, info) : nullptr;
 }
 
 /// A click is a press and a release at one place: between others the view was turned.
@@ -93,14 +94,16 @@ std::optional<Scene::Picked> Scene::Parts::picked_at(const QPoint& place) {
             found.text = found.text.arg(1000 * coordinate, 0, 'f', 2);
         }
         const auto* array_info = info(surface);
-        vtkDataArray* array = array_info != nullptr ? array_of(zone, *array_info) : nullptr;
+        vtkDataArray* array = array_info != nullptr ? array_of(*surface.mapper->GetInput(), *array_info) : nullptr;
         const vtkIdType index =
             array_info != nullptr && array_info->on == Location::nodes ? picker->GetPointId() : picker->GetCellId();
         if (array != nullptr && index >= 0 && index < array->GetNumberOfTuples()) {
-            found.text += QString("  ·  %1 %2 %3")
-                              .arg(QString::fromStdString(choice.label))
-                              .arg(value_of(*array, index, choice.component), 0, 'g', 5)
-                              .arg(QString::fromStdString(pretty_unit(choice.unit)));
+            found.text +=
+                QString("  ·  %1 %2%3 %4")
+                    .arg(QString::fromStdString(choice.label))
+                    .arg(QString(surface.whole ? "about " : ""))  // a mean of faces that the stand-in has one for
+                    .arg(value_of(*array, index, choice.component), 0, 'g', 5)
+                    .arg(QString::fromStdString(pretty_unit(choice.unit)));
         }
         return found;
     }

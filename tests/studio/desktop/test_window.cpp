@@ -5,9 +5,7 @@
 // clang-format on
 
 #include <gtest/gtest.h>
-#include <time.h>
 
-#include <QAbstractEventDispatcher>
 #include <QAbstractSpinBox>
 #include <QAction>
 #include <QApplication>
@@ -40,6 +38,7 @@
 #include "studio/desktop/study_tree.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "tests/studio/desktop/heartbeat.h"
 #include "tests/studio/desktop/window_fixture.h"
 
 namespace underbody::studio {
@@ -418,37 +417,6 @@ TEST_F(Window, ClosingWhileItComputesAsks) {
     EXPECT_EQ(asked_, 1);
     answer_ = true;
     EXPECT_TRUE(window_->close());
-}
-
-/// Processor time that the window's thread spends without coming back to its loop, at most.
-class Heartbeat : public QObject {
-public:
-    Heartbeat() {
-        auto* dispatcher = QAbstractEventDispatcher::instance();
-        connect(dispatcher, &QAbstractEventDispatcher::awake, this, [this] { beat(); });
-        connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, [this] { beat(); });
-        last_ = now();
-    }
-    [[nodiscard]] double longest() const { return longest_; }
-
-private:
-    static double now() {
-        timespec time{};
-        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    }
-    void beat() {
-        const double time = now();
-        longest_ = std::max(longest_, time - last_);
-        last_ = time;
-    }
-    double last_ = 0, longest_ = 0;
-};
-
-double thread_time() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 // Figures of a study that is computed are painted and encoded beside the window, which only lays them out; the bytes

@@ -5,6 +5,7 @@
 
 #include <QApplication>
 #include <clocale>
+#include <functional>
 #include <memory>
 
 #include "studio/desktop/main_window.h"
@@ -16,12 +17,16 @@ namespace underbody::studio {
 
 namespace fs = std::filesystem;
 
+/// Called before the application is made; `offscreen` draws without a display, and without 3D.
+inline std::function<void()> choose_platform = [] { ::setenv("QT_QPA_PLATFORM", "offscreen", 1); };
+
 /// One application for all tests: Qt allows no second one.
 inline QApplication& application() {
     static int count = 1;
     static char name[] = "test_desktop";
     static char* arguments[] = {name, nullptr};
-    ::setenv("QT_QPA_PLATFORM", "offscreen", 1);
+    static const bool chosen = (choose_platform(), true);
+    static_cast<void>(chosen);
     static auto* instance = new QApplication(count, arguments);  // it must outlive whatever goes at the end
     std::setlocale(LC_NUMERIC, "C");
     QLocale::setDefault(QLocale::c());

@@ -1,0 +1,157 @@
+#include "studio/desktop/whole_picture.h"
+
+#include <vtkActor.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <QtConcurrent>
+#include <sstream>
+
+#include "core/virtual_display.h"
+
+namespace underbody::studio {
+
+std::string WholePicture::Wanted::key() const {
+    std::ostringstream text;
+    text.precision(12);
+    const auto add = [&](const double* values, int count) {
+        for (int i = 0; i < count; ++i) {
+            text << values[i] << ' ';
+        }
+    };
+    text << width << ' ' << height << ' ' << camera->GetParallelProjection() << ' ' << camera->GetParallelScale() << ' '
+         << camera->GetViewAngle() << ' ';
+    add(camera->GetPosition(), 3);
+    add(camera->GetFocalPoint(), 3);
+    add(camera->GetViewUp(), 3);
+    add(camera->GetWindowCenter(), 2);
+    add(ground.data(), 3);
+    add(ground_above.data(), 3);
+    add(colours->GetTableRange(), 2);
+    add(colours->GetTableValue(0), 4);  // the two scales of colours differ at their end
+    text << colours->GetVectorMode() << ' ' << colours->GetVectorComponent();
+    for (const auto& surface : surfaces) {
+        text << '\n'
+             << static_cast<const void*>(surface.faces.Get()) << ' ' << surface.coloured_by << ' '
+             << surface.scalar_mode << ' ' << surface.look->GetEdgeVisibility() << ' ' << surface.look->GetOpacity()
+             << ' ';
+        add(surface.look->GetColor(), 3);
+    }
+    return text.str();
+}
+
+/// Keeps what it drew: from another side only the picture is new, not what the surfaces are made of.
+class WholePicture::Painter {
+public:
+    vtkSmartPointer<vtkImageData> paint(const Wanted& wanted) {
+        if (!window_) {
+            window_ = vtkSmartPointer<vtkRenderWindow>::New();
+            window_->SetOffScreenRendering(1);
+            window_->SetMultiSamples(4);
+            window_->AddRenderer(renderer_);
+            renderer_->GradientBackgroundOn();
+        }
+        if (window_->SupportsOpenGL() == 0) {
+            return nullptr;
+        }
+        window_->SetSize(wanted.width, wanted.height);
+        auto below = wanted.ground, above = wanted.ground_above;
+        renderer_->SetBackground(below.data());
+        renderer_->SetBackground2(above.data());
+        renderer_->SetActiveCamera(wanted.camera);
+        std::vector<Drawn> drawn;
+        for (const auto& surface : wanted.surfaces) {
+            drawn.push_back(of(surface, wanted.colours));
+        }
+        renderer_->RemoveAllViewProps();
+        for (const auto& one : drawn) {
+            renderer_->AddActor(one.actor);
+        }
+        drawn_ = std::move(drawn);
+        renderer_->ResetCameraClippingRange();
+        window_->Render();
+        auto image = vtkSmartPointer<vtkImageData>::New();
+        vtkNew<vtkUnsignedCharArray> pixels;
+        window_->GetPixelData(0, 0, wanted.width - 1, wanted.height - 1, 0, pixels);
+        pixels->SetName("pixels");
+        image->SetDimensions(wanted.width, wanted.height, 1);
+        image->GetPointData()->SetScalars(pixels);
+        return pixels->GetNumberOfTuples() > 0 ? image : nullptr;
+    }
+
+private:
+    struct Drawn {
+        vtkSmartPointer<vtkPolyData> faces;
+        vtkSmartPointer<vtkActor> actor;
+    };
+
+    Drawn of(const Wanted::Surface& surface, vtkLookupTable* colours) {
+        Drawn drawn{surface.faces, nullptr};
+        for (const auto& known : drawn_) {
+            drawn.actor = known.faces == surface.faces ? known.actor : drawn.actor;
+        }
+        if (!drawn.actor) {
+            // Of its own: what VTK notes in a surface that it draws, it does not note in one that is clicked on.
+            vtkNew<vtkPolyData> own;
+            own->ShallowCopy(surface.faces);
+            vtkNew<vtkPolyDataMapper> mapper;
+            mapper->SetInputData(own);
+            mapper->UseLookupTableScalarRangeOn();
+            mapper->InterpolateScalarsBeforeMappingOn();
+            drawn.actor = vtkSmartPointer<vtkActor>::New();
+            drawn.actor->SetMapper(mapper);
+        }
+        auto* mapper = drawn.actor->GetMapper();
+        mapper->SetLookupTable(colours);
+        mapper->SetScalarVisibility(!surface.coloured_by.empty());
+        if (!surface.coloured_by.empty()) {
+            mapper->SetScalarMode(surface.scalar_mode);
+            mapper->SelectColorArray(surface.coloured_by.c_str());
+        }
+        drawn.actor->SetProperty(surface.look);
+        return drawn;
+    }
+
+    vtkSmartPointer<vtkRenderWindow> window_;
+    vtkNew<vtkRenderer> renderer_;
+    std::vector<Drawn> drawn_;
+};
+
+WholePicture::WholePicture() : painter_(std::make_shared<Painter>()), newest_(std::make_shared<std::atomic<int>>(0)) {
+    thread_.setMaxThreadCount(1);
+    thread_.setExpiryTimeout(-1);
+}
+
+WholePicture::~WholePicture() {
+    ++*newest_;
+    QtConcurrent::run(&thread_, [painter = std::move(painter_)]() mutable { painter.reset(); });
+    thread_.waitForDone();
+}
+
+void WholePicture::ask(const Wanted& wanted, std::function<void(vtkSmartPointer<vtkImageData>)> done) {
+    const int mine = ++asked_;
+    *newest_ = mine;
+    ++busy_;
+    QtConcurrent::run(&thread_, [this, mine, wanted, done = std::move(done), newest = newest_, painter = painter_] {
+        vtkSmartPointer<vtkImageData> image;
+        const bool wanted_still = *newest == mine;
+        if (wanted_still && core::display_answers()) {
+            image = painter->paint(wanted);
+        }
+        QMetaObject::invokeMethod(
+            this,
+            [this, image, done, wanted_still] {
+                --busy_;
+                if (wanted_still) {
+                    done(image);
+                }
+            },
+            Qt::QueuedConnection);
+    });
+}
+
+}  // namespace underbody::studio
