@@ -1,0 +1,311 @@
+// bench_desktop [STUDY] [--faces N] [--cases FOLDER]: the figures of the window on a display of its own (Xvfb, software
+// renderer) by the clock, for a quiet machine. STUDY: computed, as `underbody study run` leaves it (default
+// cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of very many
+// cases, as tests/bench/cases/bench_scaling.py makes them.
+#include <QVTKOpenGLNativeWidget.h>
+#include <unistd.h>
+
+#include <QApplication>
+#include <QElapsedTimer>
+#include <QLineEdit>
+#include <QSurfaceFormat>
+#include <QTest>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "core/file.h"
+#include "core/virtual_display.h"
+#include "studio/desktop/design_panel.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/screenshots.h"
+#include "studio/desktop/state/words.h"
+#include "studio/desktop/study_tree.h"
+#include "studio/desktop/theme.h"
+#include "tests/studio/desktop/heartbeat.h"
+#include "tests/support/many_faces.h"
+
+namespace underbody::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Since the process was started, s.
+double age() {
+    std::ifstream file("/proc/self/stat");
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    std::istringstream rest(text.substr(text.rfind(')') + 2));
+    std::string word;
+    for (int i = 0; i < 20; ++i) {
+        rest >> word;
+    }
+    timespec now{};
+    ::clock_gettime(CLOCK_BOOTTIME, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+           std::stod(word) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+/// Resident, and the part of it that belongs to this process alone, MB.
+std::array<double, 2> memory() {
+    std::ifstream file("/proc/self/status");
+    std::array<double, 2> found{};
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("VmRSS:")) {
+            found[0] = std::stod(line.substr(6)) / 1024;
+        } else if (line.starts_with("RssAnon:")) {
+            found[1] = std::stod(line.substr(8)) / 1024;
+        }
+    }
+    return found;
+}
+
+void say_memory(const char* what, double goal) {
+    const auto [all, own] = memory();
+    std::printf("memory, %-32s %8.0f MB    (goal %.0f; %.0f of it not of libraries)\n", what, all, goal, own);
+}
+
+void say(const std::string& what, double seconds, const std::string& goal) {
+    std::printf("%-40s %8.0f ms    (goal %s)\n", what.c_str(), 1000 * seconds, goal.c_str());
+    std::fflush(stdout);
+}
+
+/// Longest time by the clock that the window's thread was not at its loop.
+class ClockBeat : public QObject {
+public:
+    ClockBeat() {
+        auto* dispatcher = QAbstractEventDispatcher::instance();
+        connect(dispatcher, &QAbstractEventDispatcher::awake, this, [this] { time_.restart(); });
+        connect(dispatcher, &QAbstractEventDispatcher::aboutToBlock, this, [this] { beat(); });
+        time_.start();
+    }
+    double take() { return std::exchange(longest_, 0); }
+
+private:
+    void beat() {
+        longest_ = std::max(longest_, 1e-9 * static_cast<double>(time_.nsecsElapsed()));
+        time_.restart();
+    }
+    QElapsedTimer time_;
+    double longest_ = 0;
+};
+
+/// Until it is so, in seconds; at most a minute.
+template <class Done>
+double until(Done done) {
+    QElapsedTimer time;
+    time.start();
+    while (!done() && time.elapsed() < 60000) {
+        QApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents, 2);
+    }
+    return 1e-9 * static_cast<double>(time.nsecsElapsed());
+}
+
+class Bench {
+public:
+    Bench(MainWindow& window) : window_(window) {}
+
+    void study(const fs::path& folder) {
+        window_.open_study(folder);
+        const double first = until([&] { return panel<DesignPanel>().shown() != nullptr || drawn() > 0; });
+        say("opened, to the first picture", first, "600: 1.0 s from the start less 0.4 s to the window");
+        say("  since the process was started", age(), "1000");
+        settle(window_);
+        say("  longest gap of the loop", beat_.take(), "100");
+        say_memory("the study", 200);
+    }
+
+    void actions() {
+        double longest = 0;
+        std::string worst;
+        for (const char* line :
+             {"workspace explore", "brush gap=0:6mm", "brush", "workspace compare", "fields camera=bottom",
+              "select case/ellipse-h5-p0 case/ellipse-h2-p0", "fields difference=on", "fields difference=off",
+              "workspace tables", "table lift net_weight=0.25N", "workspace stability", "region glide start=5mm,5mm/s",
+              "workspace loop", "workspace design", "set 'protrusion.height=1.5 mm'", "operation gap=8mm", "reset"}) {
+            window_.desk().act(words_of(line));
+            settle(window_);
+            const double gap = beat_.take();
+            std::printf("    %-50s %6.0f ms\n", line, 1000 * gap);
+            worst = gap > longest ? line : worst;
+            longest = std::max(longest, gap);
+        }
+        say("longest gap of the loop, '" + worst + "'", longest, "50, 100 while jobs run");
+        QElapsedTimer time;
+        time.start();
+        window_.desk().undo();
+        QApplication::processEvents();
+        say("undo", 1e-9 * static_cast<double>(time.nsecsElapsed()), "50");
+        settle(window_);
+        beat_.take();
+    }
+
+    /// A number is dragged for two seconds; a body counts when it is another one.
+    void drag() {
+        window_.desk().act({"workspace", "design"});
+        settle(window_);
+        auto& design = panel<DesignPanel>();
+        const auto* before = design.shown().get();
+        int bodies = 0, moves = 0;
+        QElapsedTimer time;
+        time.start();
+        while (time.elapsed() < 2000) {
+            const double height = 1 + 0.001 * static_cast<double>(time.elapsed() % 1000);
+            window_.desk().act({"set", "protrusion.height=" + std::to_string(height) + " mm"}, "drag");
+            ++moves;
+            until([&, next = moves * 16] { return time.elapsed() >= next || design.shown().get() != before; });
+            bodies += design.shown().get() != before ? 1 : 0;
+            before = design.shown().get();
+        }
+        std::printf("%-40s %8.1f /s    (goal 20)\n", "bodies while a number is dragged", bodies / 2.0);
+        time.restart();
+        window_.desk().end_gesture();
+        const double rest = until([&] { return design.shown()->certificate.has_value(); });
+        say("release to surface and certificate", rest, "300");
+        settle(window_);
+        say("  longest gap of the loop", beat_.take(), "100");
+    }
+
+    void cancel() {
+        window_.jobs().start("bench", "waiting", [](core::Progress& progress) -> std::function<void()> {
+            for (;;) {
+                progress.check();
+                ::usleep(1000);
+            }
+        });
+        QTest::qWait(100);
+        window_.jobs().cancel();
+        say("cancel to nothing running", until([&] { return !window_.jobs().busy(); }), "200");
+    }
+
+    void faces(int count, const fs::path& folder) {
+        test::write_stl(folder / "many.stl", count);
+        beat_.take();
+        window_.take_files({folder / "many.stl"});
+        auto& fields = panel<FieldsPanel>();
+        say(std::to_string(count) + " faces to the first picture", until([&] { return fields.stands_in(0); }), "6000");
+        QVTKOpenGLNativeWidget* view = nullptr;
+        for (auto* one : fields.findChildren<QVTKOpenGLNativeWidget*>()) {
+            view = one->isVisible() ? one : view;
+        }
+        say("  longest gap of the loop", beat_.take(), "100");
+        say("  whole picture", until([&] { return !fields.stands_in(0); }), "3200: 200 of rest and 3000");
+        say("  longest gap of the loop", beat_.take(), "100");
+        const QPoint middle = view->rect().center();
+        QTest::mousePress(view, Qt::LeftButton, Qt::NoModifier, middle);
+        QElapsedTimer time;
+        time.start();
+        int frames = 0;
+        for (; time.elapsed() < 3000; ++frames) {
+            QTest::mouseMove(view, middle + QPoint(frames % 200, frames % 120));
+            QApplication::processEvents();
+        }
+        std::printf("%-40s %8.1f /s    (goal 15)\n", "  pictures while turning",
+                    1000.0 * frames / static_cast<double>(time.elapsed()));
+        QTest::mouseRelease(view, Qt::LeftButton, Qt::NoModifier, middle);
+        say("  longest gap of the loop", beat_.take(), "100");
+        say("  whole picture after the turn", until([&] { return !fields.stands_in(0); }), "3200");
+        say_memory("with them", 700);
+        window_.desk().undo();
+        settle(window_);
+    }
+
+    void many_cases(const fs::path& folder) {
+        beat_.take();
+        window_.open_study(folder);
+        say("many cases to the first row",
+            until([&] { return window_.has_study() && window_.desk().session().folder == fs::absolute(folder); }),
+            "500");
+        settle(window_);
+        say("  longest gap of the loop", beat_.take(), "100");
+        for (auto* edit : window_.findChildren<QLineEdit*>()) {
+            if (edit->accessibleName() == "Filter the study") {
+                QTest::keyClicks(edit, "v");
+                QElapsedTimer time;
+                time.start();
+                QTest::keyClicks(edit, "1");
+                QApplication::processEvents();
+                say("  a letter of the filter", 1e-9 * static_cast<double>(time.nsecsElapsed()), "10");
+                edit->clear();
+            }
+        }
+        QElapsedTimer time;
+        time.start();
+        window_.findChild<StudyTree*>()->sortByColumn(StudyModel::lift, Qt::DescendingOrder);
+        QApplication::processEvents();
+        say("  sorted by lift", 1e-9 * static_cast<double>(time.nsecsElapsed()), "30");
+        say_memory("with them", 250);
+    }
+
+    void empty() { say_memory("empty", 110); }
+
+private:
+    template <class Panel>
+    Panel& panel() {
+        return *window_.findChild<Panel*>();
+    }
+    std::size_t drawn() { return panel<FieldsPanel>().drawn(); }
+
+    MainWindow& window_;
+    ClockBeat beat_;
+};
+
+int run(int argc, char** argv) {
+    fs::path study = fs::path(UNDERBODY_SOURCE_FOLDER) / "cases" / "evie", cases;
+    int faces = 5000000;
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--faces" && i + 1 < argc) {
+            faces = std::stoi(argv[++i]);
+        } else if (word == "--cases" && i + 1 < argc) {
+            cases = argv[++i];
+        } else {
+            study = word;
+        }
+    }
+    const double before_display = age();
+    const core::VirtualDisplay display(1600, 1000);
+    ::setenv("DISPLAY", display.name().c_str(), 1);
+    ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+    const double display_took = age() - before_display;
+    QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    QApplication application(argc, argv);
+    std::setlocale(LC_NUMERIC, "C");
+    QLocale::setDefault(QLocale::c());
+    QApplication::setStyle(window_style());
+    set_theme("light");
+    MainWindow window(false);
+    window.ask = [](const QString&, const QString&, const QString&) { return true; };
+    window.resize(1280, 800);
+    Bench bench(window);
+    window.show();
+    (void)QTest::qWaitForWindowExposed(&window, 20000);
+    say("start to the window", age() - display_took, "400");
+    settle(window);
+    bench.empty();
+    bench.study(study);
+    bench.actions();
+    bench.drag();
+    bench.cancel();
+    const core::TemporaryFolder scratch;
+    if (faces > 0) {
+        bench.faces(faces, scratch.path());
+    }
+    if (!cases.empty()) {
+        bench.many_cases(cases);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace underbody::studio
+
+int main(int argc, char** argv) {
+    try {
+        return underbody::studio::run(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_desktop: %s\n", error.what());
+        return 1;
+    }
+}
