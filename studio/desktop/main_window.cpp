@@ -211,7 +211,6 @@ void MainWindow::build_below() {
     below_dock_->setObjectName("below_dock");
     below_dock_->setWidget(below_);
     addDockWidget(Qt::BottomDockWidgetArea, below_dock_);
-    resizeDocks({below_dock_}, {150}, Qt::Vertical);
 }
 
 void MainWindow::build_status() {
@@ -385,13 +384,18 @@ void MainWindow::offer_recovery() {
     }
 }
 
-/// The tree has all its columns where the workspaces leave them room.
+/// The tree has all its columns where the workspaces leave them room; what stands below has a few lines.
 void MainWindow::showEvent(QShowEvent* event) {
     QMainWindow::showEvent(event);
     if (!laid_out_) {
         laid_out_ = true;
-        resizeDocks({tree_dock_}, {std::clamp(width() - middle_->minimumSizeHint().width() - 24, 220, 490)},
-                    Qt::Horizontal);
+        QSize needed;
+        for (const auto* panel : panels_) {
+            needed = needed.expandedTo(panel->minimumSizeHint());
+        }
+        const QSize left = size() - needed;
+        resizeDocks({tree_dock_}, {std::clamp(left.width() - 24, 220, 490)}, Qt::Horizontal);
+        resizeDocks({below_dock_}, {std::clamp(left.height() - 110, 100, 150)}, Qt::Vertical);
     }
 }
 
