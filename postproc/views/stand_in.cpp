@@ -61,14 +61,15 @@ struct Cluster {
         const Eigen::SelfAdjointEigenSolver<Matrix3d> own(planes);
         const Vector3d rest = right_side - planes * mean;
         Vector3d moved = mean;
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 2; i >= 0; --i) {  // the stiffest first; what would lead far away is left out
             const double stiffness = own.eigenvalues()[i];
             if (stiffness > 1e-4 * own.eigenvalues()[2]) {
-                moved += own.eigenvectors().col(i) * (own.eigenvectors().col(i).dot(rest) / stiffness);
+                const Vector3d next =
+                    moved + own.eigenvectors().col(i) * (own.eigenvectors().col(i).dot(rest) / stiffness);
+                moved = next.allFinite() && next.cwiseAbs().maxCoeff() < 1 ? next : moved;
             }
         }
-        const bool near = moved.allFinite() && moved.cwiseAbs().maxCoeff() < 1;
-        return middle + (near ? moved : mean);
+        return middle + moved;
     }
 };
 

@@ -80,6 +80,8 @@ struct Scene::Parts : QObject {
     /// Shows the picture of all faces where it is that of what is seen; else the stand-in, and asks for it at rest.
     void choose_drawn();
     void ask_for_whole();
+    /// Of the zones that are seen.
+    void show_actors(bool shown);
     [[nodiscard]] bool visible(const Surface& surface) const {
         return surface.zone < seen.size() && seen[surface.zone];
     }

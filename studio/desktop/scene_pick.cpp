@@ -74,6 +74,7 @@ std::optional<Scene::Picked> Scene::pick(const QPoint& place) const { return par
 
 std::optional<Scene::Picked> Scene::Parts::picked_at(const QPoint& place) {
     const double ratio = widget->devicePixelRatioF();
+    show_actors(true);  // also under the picture of all faces, where the next drawing hides them again
     if (!field || picker->Pick(place.x() * ratio, (widget->height() - 1 - place.y()) * ratio, 0, renderer) == 0) {
         return {};
     }

@@ -43,17 +43,20 @@ WholePicture::Wanted Scene::Parts::wanted_whole() const {
     return wanted;
 }
 
+void Scene::Parts::show_actors(bool shown) {
+    for (const auto& surface : surfaces) {
+        surface.actor->SetVisibility(shown && visible(surface));
+        surface.mirrored->SetVisibility(shown && visible(surface) && mirrored && mirror.is_half());
+    }
+}
+
 void Scene::Parts::choose_drawn() {
     if (!whole) {
         return;
     }
     const bool drawn = !whole_of.empty() && whole_of == wanted_whole().key();
     renderer->SetTexturedBackground(drawn);
-    for (const auto& surface : surfaces) {
-        const bool shown = visible(surface) && !drawn;
-        surface.actor->SetVisibility(shown);
-        surface.mirrored->SetVisibility(shown && mirrored && mirror.is_half());
-    }
+    show_actors(!drawn);
     if (!drawn) {
         rest.start();
     }
