@@ -128,8 +128,10 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
                Shell& shell) {
     shell.list_on_stdout = a.table.empty();
     const core::Table starts = core::read_csv(std::filesystem::path(a.starts));
-    std::vector<dynamics::EndClass> classes;
-    core::Table ends = dynamics::ends_of_starts(model, starts, options, classes, shell.progress());
+    dynamics::StartEnds found = dynamics::ends_of_starts(model, starts, options, shell.progress());
+    const std::vector<dynamics::EndClass>& classes = found.classes;
+    core::Table& ends = found.table;
+    shell.show(found.remarks);
     shell.comment_warnings(ends);
     shell.hand_over("map", [&] { return ends; });
     if (!a.table.empty()) {
@@ -317,9 +319,9 @@ int run_region(const RegionArguments& a, Shell& shell) {
         write_picture(dynamics::region_figure(region), a.out);
     }
     if (!a.table.empty()) {
-        core::write_csv(std::filesystem::path(a.table), dynamics::region_table(region));
+        core::write_csv(std::filesystem::path(a.table), commented_map(region, shell));
     }
-    shell.hand_over("map", [&] { return dynamics::region_table(region); });
+    shell.hand_over("map", [&] { return commented_map(region, shell); });
     nlohmann::json json;
     dynamics::to_json(json, region);
     show_forces(shell, model, options.held, json);

@@ -123,6 +123,12 @@ void RegionLoopOptions::check() const {
     }
 }
 
+core::Table commented_map(const dynamics::StabilityRegion& region, const Shell& shell) {
+    core::Table map = dynamics::region_table(region);
+    shell.comment_warnings(map);
+    return map;
+}
+
 int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model& model,
                               const dynamics::RegionOptions& options, std::size_t draws, std::uint64_t seed,
                               const std::string& picture, const std::string& table, Shell& shell) {
@@ -152,7 +158,7 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
         figure = dynamics::region_figure(region);
         figure.title = "Where starts end with the loop and its estimator";
         if (!table.empty()) {
-            core::write_csv(std::filesystem::path(table), dynamics::region_table(region));
+            core::write_csv(std::filesystem::path(table), commented_map(region, shell));
         }
         text = region.rule + "\n";
         for (const dynamics::EndClass& end : region.classes) {

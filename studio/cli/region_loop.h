@@ -24,6 +24,9 @@ struct RegionLoopOptions {
     void check() const;
 };
 
+/// One row a start of the map, with the warnings so far as comments.
+core::Table commented_map(const dynamics::StabilityRegion& region, const Shell& shell);
+
 /// The map of a loop with its estimator; with `draws` the chance that it holds from each start over the sensors' noise.
 /// `options.feedback` is the law.
 int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model& model,

@@ -168,6 +168,71 @@ TEST_F(Warnings, OfPicturesImportsAndProbesStandInTheirTextAndDocument) {
     EXPECT_THAT(json::parse(listed.output)["warnings"].dump(), HasSubstr(absent));
 }
 
+// A pressure over density, as OpenFOAM writes it, cannot be drawn in pascal without a density.
+TEST_F(Warnings, OfViewsAndProbesStandWhereTheirNumbersAre) {
+    const std::string box = (data_folder() / "openfoam/ascii").string();
+    const std::string density = "pressure is over density here: --density";
+    expect_once({"views", box, "--list"}, density);
+    expect_once({"views", box, "--list", "--length-unit", "mm"}, "its lengths are in m, as it says");
+    const auto text = run_underbody({"views", box, "--list"}, folder.path());
+    EXPECT_EQ(times_in(text.errors, density), 1U) << text.errors;
+    const auto with = run_underbody({"views", box, "--list", "--density", "998 kg/m^3"}, folder.path());
+    EXPECT_THAT(with.output, Not(HasSubstr("over density")));
+
+    core::write_file(folder.path() / "cube.csv", field_without_shear(0.003, 100));
+    const std::string unused = "coordinate 'X' is in m: a length unit .mm. is for files that state none";
+    const std::string plain = "coordinate 'X' is in m: a length unit (mm) is for files that state none";
+    std::vector<std::string> words = {"probe", "cube.csv", "--point", "0,0,0.003", "--length-unit", "mm"};
+    const auto table = run_underbody(words, folder.path());
+    ASSERT_EQ(table.exit_code, 0) << table.errors;
+    EXPECT_THAT(table.output, testing::ContainsRegex("# warning: [^\n]*" + unused));
+    EXPECT_EQ(times_in(table.output, plain), 1U) << table.output;
+    EXPECT_EQ(times_in(table.errors, plain), 1U) << table.errors;
+    words.emplace_back("--json");
+    EXPECT_THAT(json::parse(run_underbody(words, folder.path()).output)["warnings"].dump(), HasSubstr(plain));
+    words.back() = "--out";
+    words.emplace_back("probe-out.csv");
+    const auto written = run_underbody(words, folder.path());
+    EXPECT_EQ(times_in(written.output, plain), 1U) << written.output;
+    EXPECT_THAT(core::read_file(folder.path() / "probe-out.csv"), testing::ContainsRegex("# warning: [^\n]*" + unused));
+}
+
+TEST_F(Warnings, OfMapsAndOfGivenStartsStandInTheirTables) {
+    write_files();
+    core::write_file(folder.path() / "starts.csv", "gap [mm], heave_velocity [m/s]\n7, 0\n9, 0.001\n14, 0.2\n");
+    const std::string unsettled = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string beyond = "of the motions are at some time outside the range of a force table";
+    const auto text =
+        run_underbody({"region", "model.toml", "--starts", "starts.csv", "--escape", "30mm"}, folder.path());
+    ASSERT_EQ(text.exit_code, 0) << text.errors;
+    for (const std::string& told : {unsettled, beyond}) {
+        EXPECT_THAT(text.output, testing::ContainsRegex("# warning: [^\n]*" + told));
+        EXPECT_EQ(times_in(text.output, told), 1U) << text.output;
+        EXPECT_EQ(times_in(text.errors, told), 1U) << text.errors;
+    }
+    const auto document =
+        run_underbody({"region", "model.toml", "--starts", "starts.csv", "--escape", "30mm", "--json"}, folder.path());
+    const json warnings = json::parse(document.output)["warnings"];
+    EXPECT_THAT(warnings.dump(), testing::AllOf(HasSubstr(unsettled), HasSubstr(beyond)));
+    const std::vector<std::string> axes = {"--axes", "gap=6mm:12mm,heave_velocity=-0.01:0.01", "--grid", "6x6"};
+    for (const bool given : {true, false}) {
+        std::vector<std::string> words = {"region", "model.toml", "--table", given ? "ends.csv" : "map.csv"};
+        if (given) {
+            words.insert(words.end(), {"--starts", "starts.csv"});
+        } else {
+            words.insert(words.end(), axes.begin(), axes.end());
+        }
+        expect_once(words, unsettled);
+        EXPECT_THAT(core::read_file(folder.path() / words[3]), testing::ContainsRegex("# warning: [^\n]*" + unsettled));
+    }
+    std::vector<std::string> variants = {"region", "model.toml", "--with", "other.toml"};
+    core::write_file(folder.path() / "other.toml", core::read_file(folder.path() / "model.toml"));
+    variants.insert(variants.end(), axes.begin(), axes.end());
+    const auto both = run_underbody(variants, folder.path());
+    ASSERT_EQ(both.exit_code, 0) << both.errors;
+    EXPECT_EQ(times_in(both.output, unsettled), 2U) << both.output;  // one of each model, by its name
+}
+
 /// A speed of 3 m/s for tables of 0.4 to 0.8 m/s.
 TEST_F(Warnings, NameAConditionOutsideTheTablesInEveryCommandThatHoldsIt) {
     std::string table = "gap [mm], speed [m/s], lift_force [N]\n";

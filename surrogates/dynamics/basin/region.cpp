@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/text.h"
@@ -238,8 +239,8 @@ StabilityRegion stability_region(const Model& model, const RegionOptions& option
 
 namespace {
 
-std::vector<End> heave_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                                      std::vector<EndClass>& classes, core::Progress& progress) {
+FoundEnds heave_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                               core::Progress& progress) {
     const std::vector<double>& gap = starts.numbers("gap");
     const std::vector<double> velocity =
         starts.find("heave_velocity")
@@ -259,34 +260,35 @@ std::vector<End> heave_ends_of_starts(const Model& model, const core::Table& sta
     }
     std::vector<End> ends(gap.size());
     setup.ends->of(gap, velocity, ends, progress);
-    classes = setup.ends->classes();
-    return ends;
+    const HeaveTerms& terms = setup.plant.terms;
+    return {std::move(ends), setup.ends->classes(), table_range_text(terms.table_lower, terms.table_upper)};
 }
 
 }  // namespace
 
-core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                           std::vector<EndClass>& classes, core::Progress& progress) {
-    const std::vector<End> ends = in_heave_and_pitch(options, &starts)
-                                      ? pitch_ends_of_starts(model, starts, options, classes, progress)
-                                      : heave_ends_of_starts(model, starts, options, classes, progress);
+StartEnds ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                         core::Progress& progress) {
+    FoundEnds found = in_heave_and_pitch(options, &starts) ? pitch_ends_of_starts(model, starts, options, progress)
+                                                           : heave_ends_of_starts(model, starts, options, progress);
     std::vector<std::string> names, kinds;
     std::vector<double> times, outside;
-    for (const End& end : ends) {
-        EndClass& found = classes[static_cast<std::size_t>(end.index)];
-        found.fraction += 1.0 / static_cast<double>(ends.size());
-        found.outside += end.outside ? 1.0 / static_cast<double>(ends.size()) : 0.0;
+    for (const End& end : found.ends) {
+        EndClass& of = found.classes[static_cast<std::size_t>(end.index)];
+        of.fraction += 1.0 / static_cast<double>(found.ends.size());
+        of.outside += end.outside ? 1.0 / static_cast<double>(found.ends.size()) : 0.0;
         outside.push_back(end.outside ? 1 : 0);
-        names.push_back(found.name);
-        kinds.emplace_back(end_kind_name(found.kind));
+        names.push_back(of.name);
+        kinds.emplace_back(end_kind_name(of.kind));
         times.push_back(end.time);
     }
-    core::Table table = starts;
-    table.add_text("class", names);
-    table.add_text("kind", kinds);
-    table.add_numbers("time", "s", times);
-    table.add_numbers(outside_table_column, "1", outside);
-    return table;
+    StartEnds result{starts, std::move(found.classes), motion_remarks(model, options.held)};
+    result.table.add_text("class", names);
+    result.table.add_text("kind", kinds);
+    result.table.add_numbers("time", "s", times);
+    result.table.add_numbers(outside_table_column, "1", outside);
+    const double share = outside.empty() ? 0 : std::accumulate(outside.begin(), outside.end(), 0.0) / outside.size();
+    add_path_remark(result.remarks, share, found.range);
+    return result;
 }
 
 RegionSweep swept_regions(const Model& model, const RegionOptions& options, const core::NamedRange& range,

@@ -135,10 +135,16 @@ RegionSweep swept_regions(const Model& model, const RegionOptions& options, cons
 /// Area of each kind of end against what was swept.
 core::Figure sweep_figure(const RegionSweep& sweep);
 
-/// Where given starts end: columns of `starts` that are states (others kept), plus `class`, `kind`, `time` and
-/// `outside_table` (1: the motion is at some time beyond the range of a force table).
-core::Table ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                           std::vector<EndClass>& classes, core::Progress& progress = core::Progress::none());
+/// Where given starts end.
+struct StartEnds {
+    /// Columns of the starts that are states (others kept), plus `class`, `kind`, `time` and `outside_table` (1: the
+    /// motion is at some time beyond the range of a force table).
+    core::Table table;
+    std::vector<EndClass> classes;  ///< fractions are those of the starts
+    core::Problems remarks;         ///< of the motion, and how many starts leave the force tables
+};
+StartEnds ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                         core::Progress& progress = core::Progress::none());
 
 /// One row a start of the map: its two states, class, kind, time.
 core::Table region_table(const StabilityRegion& region);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "surrogates/dynamics/basin/region.h"
 
@@ -52,7 +54,13 @@ void add_model_remarks(StabilityRegion& region, const Model& model, const Condit
 bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts = nullptr);
 /// Regions of heave and pitch together: axes two of gap, heave_velocity, pitch, pitch_rate.
 StabilityRegion pitch_region(const Model& model, const RegionOptions& options, core::Progress& progress);
-std::vector<End> pitch_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                                      std::vector<EndClass>& classes, core::Progress& progress);
+/// Ends of given starts, the classes that they point at, and the range of the force tables in words.
+struct FoundEnds {
+    std::vector<End> ends;
+    std::vector<EndClass> classes;
+    std::string range;
+};
+FoundEnds pitch_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                               core::Progress& progress);
 
 }  // namespace underbody::dynamics

@@ -123,8 +123,8 @@ StabilityRegion pitch_region(const Model& model, const RegionOptions& options, c
     return region;
 }
 
-std::vector<End> pitch_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
-                                      std::vector<EndClass>& classes, core::Progress& progress) {
+FoundEnds pitch_ends_of_starts(const Model& model, const core::Table& starts, const RegionOptions& options,
+                               core::Progress& progress) {
     const char* names[] = {"gap", "heave_velocity", "pitch", "pitch_rate"};
     const std::vector<double>& gap = starts.numbers("gap");
     const RegionOptions& each = options;
@@ -162,8 +162,9 @@ std::vector<End> pitch_ends_of_starts(const Model& model, const core::Table& sta
             }
         },
         progress);
-    classes = judge.classes();
-    return ends;
+    const HeavePitch& plant = setup.plant;
+    return {std::move(ends), judge.classes(),
+            table_range_text(plant.table_lower(), plant.table_upper(), plant.pitch_lower(), plant.pitch_upper())};
 }
 
 }  // namespace underbody::dynamics

@@ -55,8 +55,7 @@ TEST(Region, EveryClassAgreesWithCvodeOnRandomStarts) {
     starts.add_numbers("gap", "m", gap);
     starts.add_numbers("heave_velocity", "m/s", velocity);
     options.duration = 400;
-    std::vector<EndClass> classes;
-    const core::Table ends = ends_of_starts(model, starts, options, classes);
+    const core::Table ends = ends_of_starts(model, starts, options).table;
     const std::vector<std::string>& found = ends.text("class");
     int wrong = 0;
     for (std::size_t i = 0; i < gap.size(); ++i) {
@@ -134,11 +133,10 @@ TEST(Region, CellsOfEqualRatioShareTheSameArea) {
     const std::vector<double>& gap = starts.numbers("gap");
     EXPECT_NEAR(gap[1] / gap[0], std::pow(200.0, 1.0 / 80), 1e-12);
     EXPECT_NEAR(gap[79] / gap[78], gap[1] / gap[0], 1e-12);
-    std::vector<EndClass> classes;
     core::Table bare;
     bare.add_numbers("gap", "m", gap);
     bare.add_numbers("heave_velocity", "m/s", starts.numbers("heave_velocity"));
-    const core::Table ends = ends_of_starts(model, bare, by_ratio, classes);
+    const core::Table ends = ends_of_starts(model, bare, by_ratio).table;
     EXPECT_EQ(ends.text("class"), starts.text("class"));
     double sum = 0;
     for (const EndClass& end : region.classes) {
@@ -277,8 +275,7 @@ TEST(Region, MotionsThatLeaveTheTableAreThoseOfCvode) {
     RegionOptions options;
     options.duration = 200;
     options.escape_gap = 2.5;
-    std::vector<EndClass> classes;
-    const core::Table ends = ends_of_starts(model, starts, options, classes);
+    const core::Table ends = ends_of_starts(model, starts, options).table;
     TrajectoryOptions each;
     each.duration = 200;
     each.stop_at_contact = true;
