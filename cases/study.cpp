@@ -399,6 +399,13 @@ void read_frame(Study& study, const TomlTable& root) {
     for (const auto& [name, unit] :
          {std::pair{"length", "m"}, {"width", "m"}, {"height", "m"}, {"density", "kg/m^3"}, {"speed", "m/s"}}) {
         if (const auto value = reference.find_quantity(name, unit)) {
+            const bool at_rest = *value == 0 && std::string_view(name) == "speed";
+            if (!(*value > 0 || at_rest)) {
+                throw core::InputError("range",
+                                       reference.path_of(name) + " = " + core::format_number(*value, 6) + " " + unit +
+                                           ": it must be greater than nought",
+                                       reference.place(name));
+            }
             study.reference.numbers.emplace_back(name, *value);
         }
     }

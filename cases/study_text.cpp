@@ -37,48 +37,96 @@ std::string comment_of(std::string_view line) {
     return {};
 }
 
-}  // namespace
-
-std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
-                       const std::string& key, const std::string& value) {
+std::vector<std::string> lines_of(const std::string& text) {
     std::vector<std::string> lines;
     for (const auto line : core::split(text, '\n')) {
         lines.emplace_back(line);
     }
+    return lines;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string result;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        result += (i > 0 ? "\n" : "") + lines[i];
+    }
+    return result;
+}
+
+/// Lines of one table: those behind its head, up to the next.
+struct Block {
+    std::size_t begin = 0, end = 0;
+};
+
+Block block_at(const std::vector<std::string>& lines, std::size_t begin) {
+    std::size_t end = begin;
+    while (end < lines.size() && !core::trimmed(lines[end]).starts_with("[")) {
+        ++end;
+    }
+    return {begin, end};
+}
+
+/// `key = value` at the place where the key stands, else behind the last key of the block.
+void set_in(std::vector<std::string>& lines, const Block& block, const std::string& key, const std::string& value) {
+    const std::string line = key + " = " + toml_value(value);
+    std::size_t behind = block.begin;
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+        if (key_of_line(lines[i]) == key) {
+            lines[i] = line + comment_of(lines[i]);
+            return;
+        }
+        const auto text = core::trimmed(lines[i]);
+        behind = text.empty() || text.starts_with("#") ? behind : i + 1;
+    }
+    lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(behind), line);
+}
+
+std::string name_in(const std::vector<std::string>& lines, const Block& block) {
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+        if (key_of_line(lines[i]) == "name") {
+            const auto quoted = core::split(lines[i], lines[i].find('"') != std::string::npos ? '"' : '\'');
+            return quoted.size() > 1 ? std::string(quoted[1]) : std::string();
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
+                       const std::string& key, const std::string& value) {
+    auto lines = lines_of(text);
     std::vector<std::string> names;
     const std::string head = "[[" + kind + "]]";
-    for (std::size_t begin = 0; begin < lines.size(); ++begin) {
-        if (!core::trimmed(lines[begin]).starts_with(head)) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!core::trimmed(lines[i]).starts_with(head)) {
             continue;
         }
-        std::size_t end = begin + 1, at = 0, last = begin;
-        std::string found;
-        for (; end < lines.size() && !core::trimmed(lines[end]).starts_with("["); ++end) {
-            const std::string here = key_of_line(lines[end]);
-            last = core::trimmed(lines[end]).empty() || core::trimmed(lines[end]).starts_with("#") ? last : end;
-            at = here == key ? end : at;
-            if (here == "name") {
-                const auto quoted = core::split(lines[end], lines[end].find('"') != std::string::npos ? '"' : '\'');
-                found = quoted.size() > 1 ? std::string(quoted[1]) : std::string();
-            }
+        const Block block = block_at(lines, i + 1);
+        names.push_back(name_in(lines, block));
+        if (names.back() == name) {
+            set_in(lines, block, key, value);
+            return joined(lines);
         }
-        names.push_back(found);
-        if (found != name) {
-            continue;
-        }
-        if (at > 0) {
-            lines[at] = key + " = " + toml_value(value) + comment_of(lines[at]);
-        } else {
-            lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(last) + 1, key + " = " + toml_value(value));
-        }
-        std::string result;
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            result += (i > 0 ? "\n" : "") + lines[i];
-        }
-        return result;
     }
     throw core::UsageError("missing", "the study has no [[" + kind + "]] '" + name + "'", {},
                            core::did_you_mean(name, names));
+}
+
+std::string with_value_of_table(const std::string& text, const std::string& table, const std::string& key,
+                                const std::string& value) {
+    auto lines = lines_of(text);
+    const std::string head = "[" + table + "]";
+    std::size_t begin = 0;
+    while (!table.empty() && begin < lines.size() && !core::trimmed(lines[begin]).starts_with(head)) {
+        ++begin;
+    }
+    if (begin == lines.size()) {
+        return text + (text.empty() || text.ends_with('\n') ? "" : "\n") + "\n" + head + "\n" + key + " = " +
+               toml_value(value) + "\n";
+    }
+    set_in(lines, block_at(lines, begin + (table.empty() ? 0 : 1)), key, value);
+    return joined(lines);
 }
 
 }  // namespace underbody::cases

@@ -11,4 +11,9 @@ namespace underbody::cases {
 std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
                        const std::string& key, const std::string& value);
 
+/// The same in a table that a study has once, such as "reference" or "sweep.slurm" ("": what stands before the first
+/// table); where it is not there, it is put at the end.
+std::string with_value_of_table(const std::string& text, const std::string& table, const std::string& key,
+                                const std::string& value);
+
 }  // namespace underbody::cases

@@ -1,12 +1,14 @@
 #include "studio/cli/study_set.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cases/accept.h"
 #include "cases/study.h"
+#include "cases/study_format.h"
 #include "cases/study_text.h"
 #include "core/file.h"
 #include "core/own_files.h"
@@ -18,14 +20,32 @@ namespace underbody::studio {
 
 namespace {
 
-/// KIND.NAME.KEY=VALUE; a name may hold dots.
+/// Tables that a study has once: reference, sweep.slurm ...; "" for what stands before the first.
+std::vector<std::string> single_tables() {
+    std::vector<std::string> paths;
+    for (const auto& table : cases::study_format().tables) {
+        if (table.path.find("[]") == std::string::npos) {
+            paths.push_back(table.path);
+        }
+    }
+    return paths;
+}
+
+/// TABLE.KEY=VALUE, KEY=VALUE of what stands before the first table, or KIND.NAME.KEY=VALUE; a name may hold dots.
 std::string with_assignment(const std::string& text, const std::string& assignment) {
     const auto [path, value] = name_and_value("study set", assignment);
     const auto first = path.find('.');
     const auto last = path.rfind('.');
-    if (first == std::string::npos || first == last) {
-        throw core::UsageError("parse", "'" + path + "' is not KIND.NAME.KEY", {},
-                               "such as table.lift.net_weight=0.28N");
+    const std::string table = last == std::string::npos ? "" : path.substr(0, last);
+    const auto single = single_tables();
+    if (std::find(single.begin(), single.end(), table) != single.end()) {
+        return cases::with_value_of_table(text, table, path.substr(last + 1), value);  // npos + 1 is 0: all of it
+    }
+    if (first == last) {
+        std::string hint = core::did_you_mean(table, single);
+        hint += hint.empty() ? "" : "; ";
+        throw core::UsageError("parse", "'" + path + "' is neither TABLE.KEY nor KIND.NAME.KEY of a study", {},
+                               hint + "such as reference.density=\"998 kg/m^3\" or table.lift.net_weight=0.28N");
     }
     return cases::with_value(text, path.substr(0, first), path.substr(first + 1, last - first - 1),
                              path.substr(last + 1), value);
@@ -85,8 +105,10 @@ void add_study_set(CLI::App& study, Shell& shell) {
     auto folder = std::make_shared<std::string>();
     auto assignments = std::make_shared<std::vector<std::string>>();
     command->add_option("study", *folder, "folder of the study")->required();
-    command->add_option("values", *assignments, "KIND.NAME.KEY=VALUE ...")->required();
-    command->footer("Example:\n  underbody study set cases/evie table.lift.net_weight=0.28N");
+    command->add_option("values", *assignments, "TABLE.KEY=VALUE or KIND.NAME.KEY=VALUE ...")->required();
+    command->footer(
+        "Examples:\n  underbody study set cases/evie table.lift.net_weight=0.28N\n"
+        "  underbody study set cases/evie \"reference.density=1025 kg/m^3\"");
     shell.on(command, [folder, assignments, &shell] { return set_values(shell, *folder, *assignments); });
 }
 

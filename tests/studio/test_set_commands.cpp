@@ -102,7 +102,41 @@ TEST(SetCommands, AStudyKeepsItsCommentsAndIsCheckedFirst) {
     wrong("table.lft.net_weight=1N", "lift");
     wrong("table.lift.net_wait=1N", "net_weight");
     wrong("table.lift.net_weight=1 kg", "net_weight");
-    wrong("net_weight=1N", "KIND.NAME.KEY");
+    wrong("net_weight=1N", "net_weight");
+    wrong("refrence.density=998", "reference");
+    wrong("lift.net_weight=1N", "KIND.NAME.KEY");
+    wrong("reference.densty=1025 kg/m^3", "density");
+    wrong("reference.density=-1 kg/m^3", "density");
+}
+
+TEST(SetCommands, TablesThatAStudyHasOnceAreSetAndWhatRestsOnThemIsStale) {
+    const core::TemporaryFolder folder;
+    write_small_study(folder.path());
+    const std::string study = folder.path().string();
+    const fs::path file = folder.path() / "study.toml";
+    const auto run = [&](const std::vector<std::string>& words) {
+        const auto result = run_underbody(words);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return result.output;
+    };
+    run({"study", "run", study, "--no-pictures"});
+    run({"study", "set", study, "title=Cubes", "reference.density=1025 kg/m^3", "frame.symmetry=y=0"});
+    const std::string text = core::read_file(file);
+    EXPECT_NE(text.find("title = \"Cubes\""), std::string::npos) << text;
+    EXPECT_NE(text.find("[reference]\ndensity = \"1025 kg/m^3\""), std::string::npos) << text;
+    EXPECT_NE(text.find("[frame]\nsymmetry = \"y=0\""), std::string::npos) << text;
+    run({"study", "set", study, "reference.density=998 kg/m^3"});  // where it stands by now
+    EXPECT_NE(core::read_file(file).find("[reference]\ndensity = \"998 kg/m^3\""), std::string::npos);
+    write_small_study(folder.path());
+    EXPECT_NE(run({"study", "run", study, "--no-pictures"}).find("0 results computed"), std::string::npos);
+    run({"study", "set", study, "title=Other"});  // nothing rests on it
+    EXPECT_NE(run({"study", "run", study, "--no-pictures"}).find("0 results computed"), std::string::npos);
+    run({"study", "set", study, "reference.density=1025 kg/m^3"});
+    const auto listed = nlohmann::json::parse(run({"study", "list", study, "--json"}));
+    ASSERT_FALSE(listed["cases"].empty());
+    for (const auto& one : listed["cases"]) {
+        EXPECT_EQ(one["state"], "changed") << one;
+    }
 }
 
 }  // namespace
