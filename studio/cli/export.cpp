@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cases/percent.h"
 #include "core/error.h"
 #include "core/own_files.h"
 #include "core/text.h"
@@ -264,11 +265,19 @@ int run_export(Shell& shell, const ExportCommand& command) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         const auto& table = all[i];
         const double error = result.errors[i].second;
+        const auto [low, high] = tables::range_of_points(table);
         shell.info(table.quantity() + " on a grid of " + grid +
                    (error > 0 ? ", within " + core::format_number(error, 3) + " " + table.unit() +
                                     (command.table.is_model() ? " of the forces of the model" : " of the full table")
-                              : ""));
-        errors.push_back({{"quantity", result.errors[i].first}, {"unit", table.unit()}, {"max_error", error}});
+                              : "") +
+                   (options.max_error > 0
+                        ? "; allowed are " + cases::percent(options.max_error) + " of the range of its points, " +
+                              core::format_number(low, 3) + " to " + core::format_number(high, 3) + " " + table.unit()
+                        : ""));
+        errors.push_back({{"quantity", result.errors[i].first},
+                          {"unit", table.unit()},
+                          {"max_error", error},
+                          {"range", {low, high}}});
     }
     if (shell.json) {
         nlohmann::json document{{"format", format},
@@ -308,8 +317,10 @@ void add_export_command(CLI::App& app, Shell& shell) {
     sub->add_option("--out", command->out, "file to write")->required();
     sub->add_option("--name", command->name, "prefix of identifiers, model name (default: that of the file)");
     sub->add_option("--frame", command->frame, "up: lift positive up | ned: body axes, z down")->capture_default_str();
-    sub->add_option("--max-error", command->max_error,
-                    "thins the grid to the smallest that stays within this share of the force's range, such as 0.5%");
+    sub->add_option(
+        "--max-error", command->max_error,
+        "thins the grid to the smallest that stays within this share of the range of the force over all points, such "
+        "as 0.5% (of a film that sucks 10 N at 1 mm that is 50 mN everywhere)");
     sub->add_option("--points", command->points, "evenly spaced points an axis, such as gap=40,pitch=9");
     sub->add_option("--number", command->number,
                     "C: double | float | fixed (whole numbers of 32 bits, no floating point)")

@@ -27,7 +27,7 @@ struct ExportOptions {
     bool single_precision = false;  ///< C: float instead of double
     bool fixed_point = false;       ///< C: whole numbers of 32 bits instead; straight lines between the points
     Frame frame = Frame::up;
-    double max_error = 0;  ///< > 0: thin the grid to the smallest that stays within this share of the force's range
+    double max_error = 0;  ///< > 0: thin the grid to the smallest that stays within this share of range_of_points
     std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
     bool overwrite = false;                                   ///< also files that this program did not write
     bool self_test = false;  ///< C: beside the header NAME_test.c, a program that compares it with what this program
@@ -52,6 +52,10 @@ struct ExportFormat {
     std::string description;  ///< one line
 };
 const std::vector<ExportFormat>& export_formats();
+
+/// Smallest and largest force of the table's points; ExportOptions::max_error is a share of what lies between. Of the
+/// points: a grid may reach far beyond the forces that were measured, where no points are.
+std::pair<double, double> range_of_points(const ForceTable& table);
 
 /// A name that C, MATLAB and Modelica take: letters, digits and underscores, a letter first.
 std::string identifier(const std::string& text);

@@ -54,13 +54,6 @@ std::vector<std::vector<double>> chosen_points(const ForceTable& table, const Cu
     return points;
 }
 
-/// Of the points: a grid may reach far beyond the forces that were measured, where no points are.
-double range_of_points(const ForceTable::Impl& table) {
-    const auto& values = table.points.numbers(table.quantity);
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return *high - *low;
-}
-
 ErrorModel mirrored_error(const ErrorModel& error, const CubicGrid& to, unsigned mirrored) {
     if (mirrored == 0) {
         return error;
@@ -220,6 +213,12 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
 
 }  // namespace
 
+std::pair<double, double> range_of_points(const ForceTable& table) {
+    const auto& values = table.points().numbers(table.quantity());
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {*low, *high};
+}
+
 std::string identifier(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -240,12 +239,15 @@ std::size_t most_points(std::size_t axes, bool asked) {
 }
 
 /// For straight lines between the points.
-Resampled straight_surface(const ForceTable::Impl& full, const CubicGrid& surface, const ExportOptions& options,
+Resampled straight_surface(const ForceTable& table, const CubicGrid& surface, const ExportOptions& options,
                            double allowed, core::Progress& progress) {
+    const ForceTable::Impl& full = table.impl();
+    const auto [low, high] = range_of_points(table);
+    const double range = high - low;
     const std::size_t most = most_points(surface.dimensions(), options.max_error > 0);
     if (options.max_error <= 0) {
-        return straight_resampled(
-            full.surface, points_for_straight_lines(surface, 1e-3 * range_of_points(full), most, progress), progress);
+        return straight_resampled(full.surface, points_for_straight_lines(surface, 1e-3 * range, most, progress),
+                                  progress);
     }
     Resampled thin = thinned_for_straight_lines(full.surface, surface, allowed, most, progress);
     if (thin.difference > allowed) {
@@ -270,9 +272,10 @@ Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, 
                                                     : resampled(full.surface, std::move(points), progress);
     }
     if (options.max_error <= 0) {
-        return straight && options.points.empty() ? straight_surface(full, chosen.grid, options, 0, progress) : chosen;
+        return straight && options.points.empty() ? straight_surface(table, chosen.grid, options, 0, progress) : chosen;
     }
-    const double allowed = options.max_error * range_of_points(full);
+    const auto [low, high] = range_of_points(table);
+    const double allowed = options.max_error * (high - low);
     if (!options.points.empty() && chosen.difference >= allowed) {
         remarks.push_back({core::Problem::Severity::warning,
                            "the points asked for are too few for the error asked for: their grid is off by " +
@@ -280,7 +283,7 @@ Resampled chosen_surface(const ForceTable& table, const ExportOptions& options, 
                            {}});
         return straight ? straight_resampled(full.surface, chosen.grid.points(), progress) : chosen;
     }
-    return straight ? straight_surface(full, chosen.grid, options, allowed, progress)
+    return straight ? straight_surface(table, chosen.grid, options, allowed, progress)
                     : thinned(full.surface, chosen.grid, allowed, progress);
 }
 
