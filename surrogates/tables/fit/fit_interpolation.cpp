@@ -152,10 +152,29 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
         }
         ++lines;
     }
-    for (double& v : square) {  // the errors of all axes are added, not squared
-        v = std::sqrt(v / lines / static_cast<double>(grid.dimensions()));
+    for (double& v : square) {
+        v = std::sqrt(v / lines);
     }
     return square;
+}
+
+/// The errors of the axes are independent, but an ErrorModel adds them: all get the factor by which their sum is too
+/// large. One over the root of their number where they are alike, one where a single axis makes the error.
+void add_in_squares(std::vector<std::vector<double>>& cells) {
+    double sum = 0, squares = 0;
+    for (const auto& axis : cells) {
+        double square = 0;
+        for (const double v : axis) {
+            square += v * v / static_cast<double>(axis.size());
+        }
+        sum += std::sqrt(square);
+        squares += square;
+    }
+    for (auto& axis : cells) {
+        for (double& v : axis) {
+            v *= sum > 0 ? std::sqrt(squares) / sum : 1;
+        }
+    }
 }
 
 }  // namespace
@@ -254,8 +273,13 @@ std::shared_ptr<ForceTable::Impl> fit_interpolation(const SetPoints& points, con
     }
     table->surface = CubicGrid(grid, values, table->rule);
     table->error = ErrorModel(grid, sigma);
+    std::vector<std::vector<double>> cells;
     for (std::size_t k = 0; k < n; ++k) {
-        table->error.set_cell_error(k, cell_errors(table->rule, table->surface, values, sigma, k));
+        cells.push_back(cell_errors(table->rule, table->surface, values, sigma, k));
+    }
+    add_in_squares(cells);
+    for (std::size_t k = 0; k < n; ++k) {
+        table->error.set_cell_error(k, std::move(cells[k]));
         table->error.set_growth(k, end_growth(table->surface, k));
         if (grid[k].size() == 2) {
             table->remarks.push_back(

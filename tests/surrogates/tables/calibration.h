@@ -231,6 +231,7 @@ inline std::vector<Setting> settings() {
     add("2-D, 40 scattered, 3 % unstated", 2, {}, 40, 0.03, false, false, 20, Kind::dip, 30);
     add("2-D, 8 x 5 grid, 3 % stated", 2, {8, 5}, 0, 0.03, false, true, 20, Kind::dip, 30);
     add("2-D, 8 x 5 grid, exact", 2, {8, 5}, 0, 0, false, false, 20, Kind::dip, 30);
+    add("2-D film, 8 x 5 grid, exact", 2, {8, 5}, 0, 0, false, false, 20, Kind::film, 30);
     add("2-D, 40 scattered, exact", 2, {}, 40, 0, false, false, 20, Kind::dip, 30);
     add("2-D film, 25 scattered, exact", 2, {}, 25, 0, true, false, 20, Kind::film, 30);
     add("2-D film, 25 scattered, 3 % stated", 2, {}, 25, 0.03, true, true, 20, Kind::film, 30);
