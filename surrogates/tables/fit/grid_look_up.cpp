@@ -80,17 +80,27 @@ void CubicGrid::set_weights(const double* point, CellWeights& w) const noexcept 
 }
 
 /// Sum over the corners of a cell and their Hermite data of the products of Hermite functions, once differentiated
-/// along every axis whose bit is set.
+/// along every axis whose bit is set. On the lines of the grid most of them are nought: these are left out, which
+/// changes no bit of the sum.
 double CubicGrid::sum(const CellWeights& w, std::size_t differentiated) const noexcept {
     const std::size_t width = std::size_t{1} << dimensions_;
     double result = 0;
     for (std::size_t corner = 0; corner < width; ++corner) {
-        std::size_t node = w.node;
+        std::size_t node = w.node, no_value = 0, no_slope = 0;  // axes whose function of that kind is nought here
         for (std::size_t k = 0; k < dimensions_; ++k) {
+            const auto& here = w.of[k][differentiated >> k & 1][corner >> k & 1];
             node += (corner >> k & 1) * stride_[k];
+            no_value |= static_cast<std::size_t>(here[0] == 0) << k;
+            no_slope |= static_cast<std::size_t>(here[1] == 0) << k;
+        }
+        if ((no_value & no_slope) != 0) {
+            continue;
         }
         const double* data = &nodes_[node * width];
         for (std::size_t mask = 0; mask < width; ++mask) {
+            if (((mask & no_slope) | (~mask & no_value)) != 0) {
+                continue;
+            }
             double product = data[mask];
             for (std::size_t k = 0; k < dimensions_; ++k) {
                 product *= w.of[k][differentiated >> k & 1][corner >> k & 1][mask >> k & 1];
