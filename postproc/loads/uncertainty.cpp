@@ -411,6 +411,16 @@ double straight_line_change(std::span<const double> tail) {
     return top / bottom * (n - 1);
 }
 
+/// One standard deviation of the change that the line has by chance, where there is no trend: that of a mean times
+/// sqrt(12). Of what the line leaves, because a trend passes for scatter, and for values that hang together.
+double chance_drift(std::span<const double> tail, double drift) {
+    std::vector<double> rest(tail.begin(), tail.end());
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        rest[i] -= drift * (static_cast<double>(i) / static_cast<double>(rest.size() - 1) - 0.5);
+    }
+    return std::sqrt(12.0 * correlation_time(rest) / static_cast<double>(rest.size())) * moments_of(rest).deviation;
+}
+
 /// Lag of the first clear maximum of the autocorrelation behind its first zero.
 double cycle_of(std::span<const double> tail, const Moments& m) {
     if (!(m.deviation > 0)) {
@@ -509,11 +519,8 @@ IterationScatter iteration_scatter(std::span<const double> history) {
     result.drift = straight_line_change(tail);
     result.period = cycle_of(tail, m);
     const bool small = std::abs(result.drift) + m.deviation < 1e-3 * std::abs(m.mean);
-    // Without a trend the line's change over n correlated values is of the size of the error of the mean times
-    // sqrt(12).
-    result.settled = small ||
-                     std::abs(result.drift) <= std::sqrt(12.0) * result.error_of_mean + 1e-12 * std::abs(m.mean) ||
-                     std::abs(result.drift) < 0.5 * m.deviation;
+    const double chance = 2.5 * chance_drift(tail, result.drift) + 1e-12 * std::abs(m.mean);
+    result.settled = small || std::abs(result.drift) <= chance || std::abs(result.drift) < 0.5 * m.deviation;
     result.standard_uncertainty = result.settled ? m.deviation : std::hypot(m.deviation, result.drift);
     result.text = (result.settled ? "settled" : "still drifting") + std::string(" over the last ") +
                   std::to_string(result.count) + " values: mean " + core::format_number(m.mean, 5) + ", scatter " +

@@ -60,12 +60,13 @@ struct IterationScatter {
     std::size_t first = 0;  ///< where the settled tail begins (marginal standard error rule, White 1997)
     std::size_t count = 0;  ///< its length
     double mean = 0;
-    double deviation = 0;             ///< one standard deviation of the values: of the last one as the result
-    double error_of_mean = 0;         ///< one standard deviation of the mean, of as many values as are independent
-    double correlation_time = 1;      ///< values that count as one independent value (see correlation_time)
-    double drift = 0;                 ///< change over the tail by its straight line
-    double period = 0;                ///< iterations of the strongest cycle; 0 when there is none
-    bool settled = true;              ///< the drift is lost in the scatter, or both are below 1e-3 of the mean
+    double deviation = 0;         ///< one standard deviation of the values: of the last one as the result
+    double error_of_mean = 0;     ///< one standard deviation of the mean, of as many values as are independent
+    double correlation_time = 1;  ///< values that count as one independent value (see correlation_time)
+    double drift = 0;             ///< change over the tail by its straight line
+    double period = 0;            ///< iterations of the strongest cycle; 0 when there is none
+    bool settled = true;  ///< the drift may be chance (2.5 standard deviations), or is below half the scatter, or
+                          ///< both are below 1e-3 of the mean
     double standard_uncertainty = 0;  ///< deviation and drift together
     std::string text;
 };

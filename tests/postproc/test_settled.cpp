@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <tuple>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -47,6 +48,35 @@ TEST(MeanInTimeTest, KnowsTheCorrelationOfItsValues) {
         }
         EXPECT_GE(within, 0.60 * runs) << phi;
         EXPECT_LE(within, 0.76 * runs) << phi;
+    }
+}
+
+// A campaign of hundreds: where a third of the histories that stand still are said to drift, nobody reads the verdict.
+TEST(IterationScatterTest, CallsFewOfThoseThatStandStillDriftingAndEveryRamp) {
+    std::mt19937 random(11);
+    for (const auto& [count, phi, most] : {std::tuple{60, 0.0, 0.04},
+                                           {60, 0.5, 0.10},
+                                           {60, 0.9, 0.22},
+                                           {150, 0.5, 0.06},
+                                           {150, 0.9, 0.11},
+                                           {400, 0.0, 0.02},
+                                           {400, 0.9, 0.06},
+                                           {2000, 0.9, 0.06}}) {
+        int drifting = 0, missed = 0;
+        constexpr int runs = 200;
+        for (int i = 0; i < runs; ++i) {
+            auto values = correlated(static_cast<std::size_t>(count), phi, 0, random);
+            for (double& v : values) {
+                v = 100 + 0.3 * v;  // 0.3 % of scatter
+            }
+            drifting += iteration_scatter(values).settled ? 0 : 1;  // 26 to 41 % of 60 and 150 before
+            for (int k = 0; k < count; ++k) {
+                values[static_cast<std::size_t>(k)] += 5.0 * k / count;
+            }
+            missed += iteration_scatter(values).settled ? 1 : 0;
+        }
+        EXPECT_LE(drifting, most * runs) << count << " values, correlation " << phi;
+        EXPECT_EQ(missed, 0) << count << " values, correlation " << phi;
     }
 }
 
