@@ -408,6 +408,14 @@ TEST(OpenFoam, AFieldThatOnlyOpenFoamCanComputeIsLeftOutAndTheCaseIsRead) {
     core::write_file(box / "0.005/include/round", "#include \"round\"\n");
     EXPECT_THAT(test::told(box_with(box, "#include \"include/round\"\n", "uniform 3", boundary)),
                 HasSubstr("refer to one another without end"));
+    // Of two branches nobody here knows which one counts: not the last, in silence.
+    for (const std::string lid : {"movingWall {\ntype fixedValue;\n#ifeq 1 1\nvalue uniform 3;\n#else\nvalue uniform "
+                                  "9;\n#endif\n}\n",
+                                  "#if 0\nmovingWall { type fixedValue; value uniform 9; }\n#endif\n"}) {
+        const auto branches = box_with(box, "", "uniform 3", lid + boundary);
+        EXPECT_EQ(branches.find("movingWall")->find("kinematic_pressure"), nullptr);
+        EXPECT_THAT(test::told(branches), HasSubstr("the field 'p' is left out: '#if"));
+    }
     // A patch whose value cannot be known has that of its cells, and this is said.
     const auto guessed = box_with(box, "", "uniform 3",
                                   "movingWall { type fixedValue; value uniform $nowhere; }\nfixedWalls { type "

@@ -94,6 +94,13 @@ void FoamInput::give_up_at_macro(const std::string& word) const {
                 : "'" + word.substr(0, 40) + "' is computed by OpenFOAM alone");
 }
 
+void FoamInput::skip_directive(const std::string& word) {
+    if (word.starts_with("#if") || word == "#else" || word == "#endif") {
+        give_up_at_macro(word);  // of which branch the rest is, is not known
+    }
+    token();
+}
+
 void FoamInput::expand_macros(const fs::path& case_folder) {
     expanding_ = true;
     case_folder_ = case_folder;
@@ -143,7 +150,7 @@ bool FoamInput::take_rest(const std::string& key, std::string& text, int depth) 
         std::string inner;
         const bool dictionary = !directive && take_rest(own, inner, depth + 1);
         if (directive) {
-            skip_directive();
+            skip_directive(own);
             continue;
         }
         if (!quoted) {

@@ -140,7 +140,7 @@ FoamFields::PatchValues FoamFields::patch_values(FoamInput& in, const std::strin
         } else if (key == "value") {
             stated_value(in, components, values, text);
         } else if (key.starts_with("#")) {
-            in.skip_directive();
+            in.skip_directive(key);
             values.elsewhere = true;
             continue;
         } else {
@@ -169,7 +169,7 @@ FoamFields::BoundaryValues FoamFields::boundary_values(FoamInput& in, std::size_
         }
         if (!in.was_quoted() && (name.starts_with("#") || name.starts_with("$"))) {
             if (name.front() == '#') {
-                in.skip_directive();  // boundary conditions of "setConstraintTypes" state no values
+                in.skip_directive(name);  // boundary conditions of "setConstraintTypes" state no values
             }
             boundary.elsewhere = true;
             continue;
@@ -363,10 +363,8 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
         } else if (key == "boundaryField") {
             boundary = boundary_values(in, components);
             closed = true;
-        } else if (key.starts_with("#if") || key == "#else" || key == "#endif") {
-            in.give_up_at_macro(key);
         } else if (key.starts_with("#")) {
-            in.skip_directive();
+            in.skip_directive(key);
         } else if (key != ";") {
             in.take_entry(key);
         }

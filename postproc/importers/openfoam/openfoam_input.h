@@ -52,8 +52,9 @@ public:
 
     /// "List<scalar>" before a list, which OpenFOAM leaves out where the list is empty: "nonuniform 0()".
     void skip_list_type();
-    /// What follows a word like "#include": its file is not read.
-    void skip_directive() { token(); }
+    /// What follows a word like "#include": its file is not read. Throws the InputError of give_up where the word
+    /// begins or ends a branch ("#ifeq").
+    void skip_directive(const std::string& word);
 
     /// "3 (0 1 2)", "3{0}", or the same in binary.
     Buffer<std::uint32_t> labels();
