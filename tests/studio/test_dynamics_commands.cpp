@@ -97,6 +97,19 @@ TEST_F(DynamicsCommands, LinearNamesItsModes) {
     EXPECT_EQ(found["heave"][0]["controllability"]["rank"], 2);
 }
 
+// A place across the heading, which itself stays: two zeros with one eigenvector. Both were called east.
+TEST_F(DynamicsCommands, LinearNamesWhatNothingBringsBackOnce) {
+    const std::string evie = (source_folder() / "cases/evie/model.toml").string();
+    std::vector<std::string> still;
+    for (const auto& mode : json({"linear", evie, "--at", "gap=10mm,speed=0.5m/s"})["body"]["modes"]) {
+        if (mode["neutral"].get<bool>()) {
+            still.push_back(mode["name"]);
+        }
+    }
+    std::sort(still.begin(), still.end());
+    EXPECT_EQ(still, (std::vector<std::string>{"east", "heading", "north"}));
+}
+
 TEST_F(DynamicsCommands, SimulateFollowsEvieInEveryMotion) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
     const nlohmann::json both =

@@ -36,6 +36,19 @@ LinearSystem linearise(const std::function<void(const double* x, const double* u
 
 namespace {
 
+std::vector<double> shares_in(const std::vector<std::complex<double>>& direction) {
+    std::vector<double> share;
+    double sum = 0;
+    for (const auto& part : direction) {
+        share.push_back(std::norm(part));
+        sum += share.back();
+    }
+    for (double& part : share) {
+        part /= sum > 0 ? sum : 1;
+    }
+    return share;
+}
+
 /// Share of each state in a mode: |left right|; where eigenvalues coincide without as many eigenvectors (several zeros
 /// of position and heading) left and right are orthogonal, and the right one alone tells.
 std::vector<double> participation_of(const EigenPair& e) {
@@ -47,16 +60,33 @@ std::vector<double> participation_of(const EigenPair& e) {
         lefts += std::norm(e.left[i]);
     }
     if (!(sum > 1e-6 * std::sqrt(lefts)) || !std::isfinite(sum)) {
-        sum = 0;
-        for (std::size_t i = 0; i < share.size(); ++i) {
-            share[i] = std::norm(e.right[i]);
-            sum += share[i];
-        }
+        return shares_in(e.right);
     }
     for (double& part : share) {
-        part /= sum > 0 ? sum : 1;
+        part /= sum;
     }
     return share;
+}
+
+/// After the groups of the states that take part most.
+std::string name_of(const std::vector<double>& participation, const std::vector<std::string>& groups) {
+    std::map<std::string, double> shares;
+    std::vector<std::string> order;
+    for (std::size_t i = 0; i < participation.size(); ++i) {
+        if (!shares.count(groups[i])) {
+            order.push_back(groups[i]);
+        }
+        shares[groups[i]] += participation[i];
+    }
+    const std::string& most = *std::max_element(order.begin(), order.end(),
+                                                [&](const auto& l, const auto& r) { return shares[l] < shares[r]; });
+    std::string name;
+    for (const std::string& group : order) {
+        if (shares[group] > 0.2 || group == most) {
+            name += (name.empty() ? "" : "-") + group;
+        }
+    }
+    return name;
 }
 
 constexpr double at_rest = 1e-7;   ///< rad/s: below it a pole is 0
@@ -73,20 +103,15 @@ std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::strin
         Mode mode;
         mode.value = e.value;
         mode.participation = participation_of(e);
-        std::map<std::string, double> shares;
-        std::vector<std::string> order;
-        for (std::size_t i = 0; i < mode.participation.size(); ++i) {
-            if (!shares.count(groups[i])) {
-                order.push_back(groups[i]);
-            }
-            shares[groups[i]] += mode.participation[i];
-        }
-        const std::string& most = *std::max_element(
-            order.begin(), order.end(), [&](const auto& l, const auto& r) { return shares[l] < shares[r]; });
-        for (const std::string& group : order) {
-            if (shares[group] > 0.2 || group == most) {
-                mode.name += (mode.name.empty() ? "" : "-") + group;
-            }
+        mode.name = name_of(mode.participation, groups);
+        // Two that share their one right eigenvector (the place across a heading that stays): the second is what feeds
+        // it, which the left one tells.
+        const bool again = std::any_of(found.begin(), found.end(), [&](const Mode& other) {
+            return other.name == mode.name && std::abs(other.value - mode.value) < at_rest;
+        });
+        if (again) {
+            mode.participation = shares_in(e.left);
+            mode.name = name_of(mode.participation, groups);
         }
         mode.frequency = std::abs(e.value);
         mode.damping_ratio = mode.frequency > 0 ? -e.value.real() / mode.frequency : 0;
