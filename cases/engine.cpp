@@ -117,7 +117,7 @@ Engine::Engine(const Study& the_study, const RunOptions& the_options, Mode the_m
       mode(the_mode),
       progress(the_progress),
       store_(open_store(the_study, the_options, the_mode)),
-      states_(the_study.folder(), store_ ? store_->file_hashes() : Store::FileHashes()) {
+      states_(the_study.folder(), store_ ? store_->file_hashes() : Store::FileHashes(), the_mode == Mode::look) {
     if (!store_) {
         return;
     }
@@ -142,16 +142,16 @@ bool Engine::is_true(const StoredResult& result) {
                        [this](const StoredInput& input) { return states_.still(input); });
 }
 
-std::optional<StoredResult> Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
+const StoredResult* Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
     const auto found = index_.find(place_in_index(kind, name));
     if (found != index_.end()) {
         for (const auto& result : found->second) {
             if (result.key == digest && is_true(result)) {
-                return result;
+                return &result;
             }
         }
     }
-    return std::nullopt;
+    return nullptr;
 }
 
 StoredResult Engine::make_now(const std::string& kind, const std::string& name, const std::string& digest,
@@ -186,13 +186,14 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
                                  const std::function<Value()>& work, const std::string& shown, StepResult* told) {
     progress.check();
     const std::string digest = key.digest();
-    std::optional<StoredResult> result = known(kind, name, digest);
+    const StoredResult* result = known(kind, name, digest);
+    std::optional<StoredResult> fresh;  // of this run, or of another one that goes on beside it
     StepResult step{kind, shown.empty() ? name : shown, StepState::unchanged, {}};
     if (!result && mode == Mode::look) {
         const auto earlier = index_.find(place_in_index(kind, name));
         step.state = earlier != index_.end() ? StepState::changed : StepState::missing;
         if (options.as_stored && earlier != index_.end()) {
-            result = earlier->second.front();
+            result = &earlier->second.front();
         }
     } else if (!result) {
         try {
@@ -201,14 +202,15 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
                 lock = lock_of_result(store_->file(), kind, name, progress);
             }
             for (auto& candidate : store_->results(kind, name, digest)) {  // another run may have made it meanwhile
-                if (!result && is_true(candidate)) {
-                    result = std::move(candidate);
+                if (!fresh && is_true(candidate)) {
+                    fresh = std::move(candidate);
                 }
             }
-            if (!result) {
+            if (!fresh) {
                 step.state = StepState::computed;
-                result = make_now(kind, name, digest, key, work);
+                fresh = make_now(kind, name, digest, key, work);
             }
+            result = &*fresh;
         } catch (const core::Cancelled&) {
             throw;
         } catch (const core::SystemError& error) {
@@ -225,7 +227,7 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
         *told = step;
     }
     record(std::move(step));
-    if (!result) {
+    if (result == nullptr) {
         return std::nullopt;
     }
     Made made{kind, name, result->id, result->identity(), result->summary};

@@ -130,7 +130,8 @@ public:
 
 private:
     bool is_true(const StoredResult& result);
-    std::optional<StoredResult> known(const std::string& kind, const std::string& name, const std::string& digest);
+    /// A result of the index that is true now; nullptr: none.
+    const StoredResult* known(const std::string& kind, const std::string& name, const std::string& digest);
     StoredResult make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
                           const std::function<Value()>& work);
     [[nodiscard]] std::string id_of(const std::string& kind, const std::string& name);

@@ -36,8 +36,11 @@ fs::path rest_below(const fs::path& path, const fs::path& folder) {
 
 }  // namespace
 
-FileStates::FileStates(fs::path folder, Store::FileHashes known)
-    : folder_(std::move(folder)), whole_folder_(fs::absolute(folder_).lexically_normal()), known_(std::move(known)) {}
+FileStates::FileStates(fs::path folder, Store::FileHashes known, bool one_moment)
+    : folder_(std::move(folder)),
+      whole_folder_(fs::absolute(folder_).lexically_normal()),
+      known_(std::move(known)),
+      one_moment_(one_moment) {}
 
 std::string FileStates::stored_path(const fs::path& path) const {
     const std::string& text = path.native();
@@ -79,13 +82,17 @@ std::string FileStates::presence_of(const std::string& path) {
 }
 
 std::string FileStates::names_state_of(const std::string& folder, const std::string& pattern) {
-    const std::int64_t now = core::now_in_nanoseconds();
-    const core::FileStamp stamp = core::stamp_of(folder.c_str());
-    const bool kept = now - std::max(stamp.modified, stamp.changed) > settled;
-    const std::lock_guard lock(mutex_);
-    Listing& listing = listings_[folder];
-    if (!kept || stamp.kind != core::FileStamp::Kind::folder || listing.stamp != stamp) {
-        listing = {kept ? stamp : core::FileStamp{}, core::names_in_folder(folder, "*"), {}};
+    Shelf& shelf = shelves_[std::hash<std::string>()(folder) % shelves_.size()];
+    const std::lock_guard lock(shelf.mutex);
+    const auto [place, unread] = shelf.listings.try_emplace(folder);
+    Listing& listing = place->second;
+    if (unread || !one_moment_) {
+        const std::int64_t now = core::now_in_nanoseconds();
+        const core::FileStamp stamp = core::stamp_of(folder.c_str());
+        const bool kept = now - std::max(stamp.modified, stamp.changed) > settled;
+        if (!kept || stamp.kind != core::FileStamp::Kind::folder || listing.stamp != stamp) {
+            listing = {kept ? stamp : core::FileStamp{}, core::names_in_folder(folder, "*"), {}};
+        }
     }
     const auto [state, fresh] = listing.states.try_emplace(pattern);
     if (fresh) {
@@ -121,11 +128,17 @@ std::string FileStates::content_of(const std::string& path, const std::string& s
     if (stamp.kind != core::FileStamp::Kind::file) {
         return "folder";
     }
+    const auto stated = [&](const Store::FileHashes& hashes) {
+        const auto found = hashes.find(stored);
+        return found != hashes.end() && found->second.first == stamp ? &found->second.second : nullptr;
+    };
+    if (const std::string* known = stated(known_)) {
+        return *known;
+    }
     {
         const std::lock_guard lock(mutex_);
-        const auto known = known_.find(stored);
-        if (known != known_.end() && known->second.first == stamp) {
-            return known->second.second;
+        if (const std::string* known = stated(learned_)) {
+            return *known;
         }
     }
     const core::InputScope unheard(nullptr);
@@ -138,7 +151,6 @@ std::string FileStates::content_of(const std::string& path, const std::string& s
     const std::lock_guard lock(mutex_);
     if (now - std::max(stamp.modified, stamp.changed) > settled && core::stamp_of(path.c_str()) == stamp) {
         learned_[stored] = {stamp, hash};
-        known_[stored] = {stamp, hash};
     }
     return hash;
 }

@@ -1,6 +1,7 @@
 // In which state the files are that results rest on: by their content, read again only where it may have changed.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <mutex>
 #include <string>
@@ -15,8 +16,9 @@ namespace underbody::cases {
 /// Paths of a study and the states of what they lead to. Safe to use from many threads.
 class FileStates {
 public:
-    /// `folder`: of the study, as the user named it.
-    FileStates(std::filesystem::path folder, Store::FileHashes known);
+    /// `folder`: of the study, as the user named it. `one_moment`: all is asked at one time, such as by a list, so that
+    /// a folder is read once.
+    FileStates(std::filesystem::path folder, Store::FileHashes known, bool one_moment = false);
 
     /// Hash of the content (content), of the names (names), else "absent", "file", "folder".
     std::string state_of(const core::Input& input);
@@ -44,12 +46,19 @@ private:
     std::string names_state_of(const std::string& folder, const std::string& pattern);
     static std::string presence_of(const std::string& path);
 
+    /// Folders by a hash of their path, so that threads seldom wait for one another.
+    struct Shelf {
+        std::mutex mutex;
+        std::unordered_map<std::string, Listing> listings;
+    };
+
     std::filesystem::path folder_;
     std::filesystem::path whole_folder_;
-    mutable std::mutex mutex_;
-    Store::FileHashes known_;
+    const Store::FileHashes known_;
+    const bool one_moment_;
+    mutable std::mutex mutex_;  ///< of learned_
     Store::FileHashes learned_;
-    std::unordered_map<std::string, Listing> listings_;
+    std::array<Shelf, 16> shelves_;
 };
 
 }  // namespace underbody::cases
