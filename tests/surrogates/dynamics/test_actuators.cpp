@@ -81,6 +81,22 @@ TEST(Actuators, ActUnderFeedbackAndWithAConstantInputBesideIt) {
     }
 }
 
+// The order in which they stand in the file says nothing: the dead zone is of the command, the gain of what it leaves.
+TEST(Actuators, TheDeadZoneComesBeforeTheGainInWhicheverOrderTheyStand) {
+    const EffectUse gain = make_use("input_gain", {{"gain", 0.5}}),
+                    zone = make_use("input_dead_zone", {{"width", 0.002}});
+    Conditions held;
+    held[Channel::input_force] = 0.01;
+    const Model bare = test::ref_a_model(0.05, 6);
+    const double without = HeavePlant(bare).static_force(0.1);
+    for (const auto& uses : {std::vector{gain, zone}, std::vector{zone, gain}}) {
+        EXPECT_NEAR(HeavePlant(with(bare, uses), held).static_force(0.1) - without, 0.5 * (0.010 - 0.002), 1e-15);
+    }
+    // Two of a kind: gains multiply, dead zones add up.
+    EXPECT_NEAR(HeavePlant(with(bare, {gain, zone, gain, zone}), held).static_force(0.1) - without,
+                0.25 * (0.010 - 0.004), 1e-15);
+}
+
 TEST(Actuators, ActOnAConstantInputInEveryMotion) {
     const Model model = with(test::ref_a_model(0.05, 6), {make_use("input_gain", {{"gain", 0.5}}),
                                                           make_use("input_dead_zone", {{"width", 0.002}})});
