@@ -101,7 +101,8 @@ TEST_F(DynamicsCommands, LinearNamesItsModes) {
 TEST_F(DynamicsCommands, LinearNamesWhatNothingBringsBackOnce) {
     const std::string evie = (source_folder() / "cases/evie/model.toml").string();
     std::vector<std::string> still;
-    for (const auto& mode : json({"linear", evie, "--at", "gap=10mm,speed=0.5m/s"})["body"]["modes"]) {
+    const nlohmann::json found = json({"linear", evie, "--at", "gap=10mm,speed=0.5m/s"});
+    for (const auto& mode : found["body"]["modes"]) {
         if (mode["neutral"].get<bool>()) {
             still.push_back(mode["name"]);
         }

@@ -68,6 +68,23 @@ std::vector<double> participation_of(const EigenPair& e) {
     return share;
 }
 
+/// Of two zeros that share their one right eigenvector (the place across a heading that stays) the second is the state
+/// that moves along it: the smallest x with A x = that vector.
+std::vector<std::complex<double>> what_feeds(const Matrix& a, const std::vector<std::complex<double>>& moved) {
+    Matrix normal = a.transposed() * a, along(moved.size(), 1);
+    const double small = 1e-12 * normal.largest();
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        normal(i, i) += small;
+        along(i, 0) = moved[i].real();
+    }
+    const Matrix x = solve(normal, a.transposed() * along);
+    std::vector<std::complex<double>> direction;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        direction.emplace_back(x(i, 0));
+    }
+    return direction;
+}
+
 /// After the groups of the states that take part most.
 std::string name_of(const std::vector<double>& participation, const std::vector<std::string>& groups) {
     std::map<std::string, double> shares;
@@ -104,13 +121,11 @@ std::vector<Mode> modes(const LinearSystem& system, const std::vector<std::strin
         mode.value = e.value;
         mode.participation = participation_of(e);
         mode.name = name_of(mode.participation, groups);
-        // Two that share their one right eigenvector (the place across a heading that stays): the second is what feeds
-        // it, which the left one tells.
         const bool again = std::any_of(found.begin(), found.end(), [&](const Mode& other) {
-            return other.name == mode.name && std::abs(other.value - mode.value) < at_rest;
+            return other.name == mode.name && std::abs(other.value) < at_rest && std::abs(mode.value) < at_rest;
         });
         if (again) {
-            mode.participation = shares_in(e.left);
+            mode.participation = shares_in(what_feeds(system.a, e.right));
             mode.name = name_of(mode.participation, groups);
         }
         mode.frequency = std::abs(e.value);
