@@ -23,11 +23,12 @@ class ModelForces : public testing::Test {
 protected:
     core::TemporaryFolder folder_;
 
-    /// Lift over gap and speed with errors: at 0.5 m/s two stable balances with 10 mN and an unstable one between.
+    /// Lift over gap and speed with errors: at 0.5 m/s two stable balances with 10 mN and an unstable one between; gaps
+    /// close enough to be sure of their kinds.
     void SetUp() override {
         std::string rows = "gap [mm], speed [m/s], lift_force [mN], lift_force_sigma [mN]\n";
         for (const double speed : {0.4, 0.5, 0.6, 0.8}) {
-            for (const double gap : {1., 2., 3., 5., 8., 12., 18., 26., 36., 50.}) {
+            for (const double gap : {1., 2., 3., 5., 8., 12., 15., 18., 22., 26., 31., 36., 43., 50.}) {
                 const double force =
                     speed * speed / 0.25 * (80 / gap + 40 * std::exp(-std::pow((gap - 25) / 8, 2))) - 2;
                 rows += std::to_string(gap) + ", " + std::to_string(speed) + ", " + std::to_string(force) + ", 0.4\n";
