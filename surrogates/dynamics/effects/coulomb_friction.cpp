@@ -1,15 +1,13 @@
 // F = -force w/sqrt(w^2 + (0.1 mm/s)^2)
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
-namespace {
-
-class CoulombFrictionEffect final : public Effect {
-public:
-    [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the = searched(
+const Effect& coulomb_friction_effect() {
+    static const LawEffect effect{
+        searched(
             EffectInfo{"coulomb_friction",
                        "Coulomb friction",
                        "F = -force w/sqrt(w^2 + (0.1 mm/s)^2)",
@@ -17,19 +15,10 @@ public:
                        {"heave_velocity"},
                        {{"force", "N", 0, 100, 0.01, 0, false, "against the motion"}},
                        "Coulomb; the step smoothed over 0.1 mm/s"},
-            {.kin = {"damping"}, .one_sign = true, .other_form = [](HeaveTerms& terms) { terms.friction_width *= 5; }});
-        return the;
-    }
-
-    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        terms.friction += use.values[0];
-    }
-};
-
-}  // namespace
-
-const Effect& coulomb_friction_effect() {
-    static const CoulombFrictionEffect effect;
+            {.kin = {"damping"}, .one_sign = true, .other_form = [](HeaveTerms& terms) { terms.friction_width *= 5; }}),
+        {.add_to = [](HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) {
+            terms.friction += use.values[0];
+        }}};
     return effect;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/effects/search.h"
 
 namespace underbody::dynamics {
@@ -35,7 +36,7 @@ public:
 
     [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& /*seen*/,
                                const Conditions& set_point, const EffectUse& use) const override {
-        if (use.quantity.empty() ? quantity != "lift_force" : use.quantity != quantity) {
+        if (!concerns_lift(use, quantity)) {
             return value;
         }
         const double where = set_point.get(Channel::depth, set_point.get(Channel::gap, 0));

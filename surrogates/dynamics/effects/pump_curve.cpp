@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/model/model.h"
 
@@ -29,10 +30,11 @@ double seen_by_the_law(double voltage, double reference, const EffectUse& use) {
            std::sqrt((1 + use.values[1]) / (1 + use.values[1] * x * x));
 }
 
-class PumpCurveEffect final : public Effect {
-public:
-    [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the = searched(
+}  // namespace
+
+const Effect& pump_curve_effect() {
+    static const LawEffect effect{
+        searched(
             EffectInfo{
                 "pump_curve",
                 "pump curve other than the declared power law",
@@ -44,27 +46,16 @@ public:
                  {"saturation", "1", 0, 100, 0.2, 0, false, "flow levels off at high voltage"},
                  {"exponent", "1", -1.5, 4, 0.3, 0, true, "added to the power of two"}},
                 "dead-band and saturating laws for a small pump; equal to the declared law at the reference voltage"},
-            {.needs = {"jet_voltage"}});
-        return the;
-    }
-
-    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
-                            double& /*prior*/) const override {
-        return source_feels(context, Channel::jet_voltage, true);
-    }
-
-    void before(StaticPoint& point, const EffectUse& use) const override {
-        if (point.conditions.has(Channel::jet_voltage)) {
-            point.conditions[Channel::jet_voltage] =
-                seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
-        }
-    }
-};
-
-}  // namespace
-
-const Effect& pump_curve_effect() {
-    static const PumpCurveEffect effect;
+            {.needs = {"jet_voltage"}}),
+        {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
+                    double& /*prior*/) { return source_feels(context, Channel::jet_voltage, true); },
+         .before =
+             [](StaticPoint& point, const EffectUse& use) {
+                 if (point.conditions.has(Channel::jet_voltage)) {
+                     point.conditions[Channel::jet_voltage] =
+                         seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
+                 }
+             }}};
     return effect;
 }
 

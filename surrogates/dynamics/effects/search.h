@@ -8,6 +8,9 @@
 
 namespace underbody::dynamics {
 
+/// Share of a declared inertia that an added one may take away: a body keeps some.
+constexpr double most_taken = 0.9;
+
 /// True if a source of one of these quantities has the channel as an axis or (`scaled`) a power of it.
 inline bool source_feels(const SearchContext& context, Channel channel, bool scaled) {
     const auto& asked = context.quantities;

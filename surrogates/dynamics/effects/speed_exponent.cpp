@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/model/model.h"
 
@@ -43,59 +44,50 @@ double part_without_speed(const Model& model, const std::string& quantity, const
     return sum_of_sources(model, quantity, at_rest);
 }
 
-class SpeedExponentEffect final : public Effect {
-public:
-    [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the =
-            searched(EffectInfo{"speed_exponent",
-                                "force grows with another power of the speed",
-                                "force times (speed/reference)^(exponent - declared exponent)",
-                                SeenIn::static_set,
-                                {"speed"},
-                                {{"exponent", "1", -2, 6, 0.2, 2, false, "true exponent"}},
-                                "definition",
-                                true},
-                     {.needs = {"speed"}});
-        return the;
-    }
-
-    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
-                            double& /*prior*/) const override {
-        // it does nothing at the exponent that the model declares
-        bool declared = false;
-        for (const ForceSource& source : context.model.forces) {
-            const bool asked = std::find(context.quantities.begin(), context.quantities.end(), source.quantity) !=
-                               context.quantities.end();
-            for (const ForceScale& scale : source.scales) {
-                if (asked && !declared && scale.channel == Channel::speed) {
-                    parameters.front().neutral = scale.exponent;
-                    declared = true;
-                }
-            }
-        }
-        return source_feels(context, Channel::speed, true);
-    }
-
-    [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,
-                               const Conditions& /*set_point*/, const EffectUse& use) const override {
-        if (!concerns(use, quantity) || !seen.conditions.has(Channel::speed)) {
-            return value;
-        }
-        const ForceScale declared = declared_speed_law(*seen.model, quantity);
-        const double ratio = std::abs(seen.conditions[Channel::speed]) / declared.reference;
-        if (!(ratio > 0)) {
-            return value;
-        }
-        const double factor = std::pow(ratio, use.values[0] - declared.exponent);
-        const double still = part_without_speed(*seen.model, quantity, seen.conditions);
-        return still + (value - still) * factor;
-    }
-};
-
 }  // namespace
 
 const Effect& speed_exponent_effect() {
-    static const SpeedExponentEffect effect;
+    static const LawEffect effect{
+        searched(EffectInfo{"speed_exponent",
+                            "force grows with another power of the speed",
+                            "force times (speed/reference)^(exponent - declared exponent)",
+                            SeenIn::static_set,
+                            {"speed"},
+                            {{"exponent", "1", -2, 6, 0.2, 2, false, "true exponent"}},
+                            "definition",
+                            true},
+                 {.needs = {"speed"}}),
+        {.look =
+             [](const SearchContext& context, std::vector<EffectParameter>& parameters, double& /*prior*/) {
+                 // it does nothing at the exponent that the model declares
+                 bool declared = false;
+                 for (const ForceSource& source : context.model.forces) {
+                     const bool asked = std::find(context.quantities.begin(), context.quantities.end(),
+                                                  source.quantity) != context.quantities.end();
+                     for (const ForceScale& scale : source.scales) {
+                         if (asked && !declared && scale.channel == Channel::speed) {
+                             parameters.front().neutral = scale.exponent;
+                             declared = true;
+                         }
+                     }
+                 }
+                 return source_feels(context, Channel::speed, true);
+             },
+         .after =
+             [](const std::string& quantity, double value, const StaticPoint& seen, const Conditions& /*set_point*/,
+                const EffectUse& use) {
+                 if (!concerns(use, quantity) || !seen.conditions.has(Channel::speed)) {
+                     return value;
+                 }
+                 const ForceScale declared = declared_speed_law(*seen.model, quantity);
+                 const double ratio = std::abs(seen.conditions[Channel::speed]) / declared.reference;
+                 if (!(ratio > 0)) {
+                     return value;
+                 }
+                 const double factor = std::pow(ratio, use.values[0] - declared.exponent);
+                 const double still = part_without_speed(*seen.model, quantity, seen.conditions);
+                 return still + (value - still) * factor;
+             }}};
     return effect;
 }
 

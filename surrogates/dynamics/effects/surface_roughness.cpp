@@ -1,16 +1,14 @@
 // lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length
 #include "surrogates/dynamics/effects/catalogue.h"
+#include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/effects/search.h"
 #include "surrogates/dynamics/plant/heave_equation.h"
 
 namespace underbody::dynamics {
 
-namespace {
-
-class SurfaceRoughnessEffect final : public Effect {
-public:
-    [[nodiscard]] const EffectInfo& info() const override {
-        static const EffectInfo the = searched(
+const Effect& surface_roughness_effect() {
+    static const LawEffect effect{
+        searched(
             EffectInfo{"surface_roughness",
                        "roughness of the surface",
                        "lift times 1 + near/(1 + x^2) - far x^2/(1 + x^2), x = h/length",
@@ -25,42 +23,33 @@ public:
              .starts = {{0.1, 0.1, 0.03}, {0.1, 0.1, 0.1}, {0.1, 0.1, 0.3}},
              .kin = {"place"},
              .lift_unless_named = true,
-             .one_strength_form = "as much deeper near as weaker far"});
-        return the;
-    }
-
-    [[nodiscard]] bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
-                            double& /*prior*/) const override {
-        if (context.time_series) {
-            parameters[0].lower = parameters[1].lower = 0;  // deeper near, weaker far: not the other way round
-        }
-        return true;
-    }
-
-    void add_to(HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) const override {
-        if (!concerns(use, "lift_force")) {
-            return;
-        }
-        terms.rough_near = use.values[0];
-        terms.rough_far = use.values[1];
-        terms.rough_length = use.values[2];
-    }
-
-    [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,
-                               const Conditions& /*set_point*/, const EffectUse& use) const override {
-        if (use.quantity.empty() ? quantity != "lift_force" : use.quantity != quantity) {
-            return value;
-        }
-        double slope = 0;
-        return value * roughness_factor(use.values[0], use.values[1], use.values[2],
-                                        seen.conditions.get(Channel::gap, 0), slope);
-    }
-};
-
-}  // namespace
-
-const Effect& surface_roughness_effect() {
-    static const SurfaceRoughnessEffect effect;
+             .one_strength_form = "as much deeper near as weaker far"}),
+        {.look =
+             [](const SearchContext& context, std::vector<EffectParameter>& parameters, double& /*prior*/) {
+                 if (context.time_series) {
+                     parameters[0].lower = parameters[1].lower = 0;  // deeper near, weaker far: not the other way round
+                 }
+                 return true;
+             },
+         .add_to =
+             [](HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) {
+                 if (!concerns(use, "lift_force")) {
+                     return;
+                 }
+                 terms.rough_near = use.values[0];
+                 terms.rough_far = use.values[1];
+                 terms.rough_length = use.values[2];
+             },
+         .after =
+             [](const std::string& quantity, double value, const StaticPoint& seen, const Conditions& /*set_point*/,
+                const EffectUse& use) {
+                 if (!concerns_lift(use, quantity)) {
+                     return value;
+                 }
+                 double slope = 0;
+                 return value * roughness_factor(use.values[0], use.values[1], use.values[2],
+                                                 seen.conditions.get(Channel::gap, 0), slope);
+             }}};
     return effect;
 }
 
