@@ -514,6 +514,53 @@ std::optional<SweepSpec> read_sweep(const Study& study, const TomlTable& root) {
     return sweep;
 }
 
+PictureSpec read_picture(const TomlTable& table, std::set<std::string>& taken) {
+    PictureSpec spec;
+    spec.name = unique_name(table, taken);
+    spec.where = read_where(table, "where");
+    spec.views = table.strings("views");
+    if (table.has("range")) {
+        const auto range = table.quantities("range", "Pa");
+        if (range.size() != 2 || !(range[0] < range[1])) {
+            throw core::InputError("range", table.path_of("range") + " needs two pressures, the lower one first",
+                                   table.place("range"), "range = [\"-60 Pa\", \"20 Pa\"]");
+        }
+        spec.range = {range[0], range[1]};
+    }
+    return spec;
+}
+
+RegionSpec read_region(const TomlTable& table, std::set<std::string>& taken, const Study& study) {
+    RegionSpec spec;
+    spec.name = unique_name(table, taken);
+    spec.model = table.file("model");
+    spec.forces = table.strings("forces");
+    check_tables(study, table, "forces", spec.forces);
+    for (const auto& axis : required_strings(table, "axes")) {
+        spec.axes += (spec.axes.empty() ? "" : ",") + axis;
+    }
+    spec.duration = table.quantity_or("for", "s", 60);
+    spec.columns = static_cast<int>(table.integer_or("columns", 400));
+    spec.rows = static_cast<int>(table.integer_or("rows", 400));
+    return spec;
+}
+
+VerifySpec read_verification(const TomlTable& table, std::set<std::string>& taken) {
+    VerifySpec spec;
+    spec.name = unique_name(table, taken);
+    spec.table = table.file("table");
+    spec.where = read_where(table, "where");
+    spec.quantities = required_strings(table, "quantities");
+    spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
+    if (!(spec.tolerance > 0)) {
+        throw core::InputError("range",
+                               table.path_of("tolerance") + " = " + core::format_number(spec.tolerance, 4) +
+                                   ": a share of the force greater than nought",
+                               table.place("tolerance"), "0.01 is one per cent");
+    }
+    return spec;
+}
+
 }  // namespace
 
 Study Study::open(const fs::path& path) {
@@ -562,19 +609,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     sort_by_file(study.cases);
     std::set<std::string> pictures;
     for (const auto& table : root.tables("picture")) {
-        PictureSpec spec;
-        spec.name = unique_name(table, pictures);
-        spec.where = read_where(table, "where");
-        spec.views = table.strings("views");
-        if (table.has("range")) {
-            const auto range = table.quantities("range", "Pa");
-            if (range.size() != 2 || !(range[0] < range[1])) {
-                throw core::InputError("range", table.path_of("range") + " needs two pressures, the lower one first",
-                                       table.place("range"), "range = [\"-60 Pa\", \"20 Pa\"]");
-            }
-            spec.range = {range[0], range[1]};
-        }
-        study.pictures.push_back(std::move(spec));
+        study.pictures.push_back(read_picture(table, pictures));
     }
     std::set<std::string> meshes;
     for (const auto& table : root.tables("mesh_uncertainty")) {
@@ -586,18 +621,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     }
     std::set<std::string> regions;
     for (const auto& table : root.tables("region")) {
-        RegionSpec spec;
-        spec.name = unique_name(table, regions);
-        spec.model = table.file("model");
-        spec.forces = table.strings("forces");
-        check_tables(study, table, "forces", spec.forces);
-        for (const auto& axis : required_strings(table, "axes")) {
-            spec.axes += (spec.axes.empty() ? "" : ",") + axis;
-        }
-        spec.duration = table.quantity_or("for", "s", 60);
-        spec.columns = static_cast<int>(table.integer_or("columns", 400));
-        spec.rows = static_cast<int>(table.integer_or("rows", 400));
-        study.regions.push_back(std::move(spec));
+        study.regions.push_back(read_region(table, regions, study));
     }
     std::set<std::string> measurements;
     for (const auto& table : root.tables("measurement")) {
@@ -612,19 +636,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     study.thesis_dynamics = root.boolean_or("thesis_dynamics", false);
     std::set<std::string> verifications;
     for (const auto& table : root.tables("verify")) {
-        VerifySpec spec;
-        spec.name = unique_name(table, verifications);
-        spec.table = table.file("table");
-        spec.where = read_where(table, "where");
-        spec.quantities = required_strings(table, "quantities");
-        spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
-        if (!(spec.tolerance > 0)) {
-            throw core::InputError("range",
-                                   table.path_of("tolerance") + " = " + core::format_number(spec.tolerance, 4) +
-                                       ": a share of the force greater than nought",
-                                   table.place("tolerance"), "0.01 is one per cent");
-        }
-        study.verifications.push_back(std::move(spec));
+        study.verifications.push_back(read_verification(table, verifications));
     }
     std::set<std::string> comparisons;
     for (const auto& table : root.tables("compare")) {

@@ -203,6 +203,51 @@ Table read_csv(const std::filesystem::path& path) {
     return read_csv(file.bytes(), path.string());
 }
 
+namespace {
+
+/// Of a header line in one piece.
+void check_separator(std::string_view line, std::size_t cells, const Place& place) {
+    if (cells == 1 && line.find_first_of(";\t") != std::string_view::npos) {
+        throw InputError("parse",
+                         std::string("the columns are separated by ") +
+                             (line.find(';') != std::string_view::npos ? "';'" : "tabulators") + ", not by commas",
+                         place, "separate them by commas, and write numbers with '.' as decimal point");
+    }
+}
+
+[[noreturn]] void refuse_ragged(std::string_view line, std::size_t cells, std::size_t headings, const Place& place) {
+    if (const std::string quoted = quoted_decimal_comma(line); !quoted.empty()) {
+        throw InputError("parse", quoted + " is a number with a decimal comma", place,
+                         "write it with '.' as decimal point, without quotes");
+    }
+    throw InputError("ragged",
+                     "this line has " + std::to_string(cells) + " fields, the header " + std::to_string(headings),
+                     {place.file, place.line, static_cast<std::int64_t>(std::min(cells, headings)) + 1, {}},
+                     "numbers use '.' as decimal point; a missing value is an empty field");
+}
+
+void add_cell(Column& column, const Heading& heading, std::string_view cell, const Place& place) {
+    if (column.is_text()) {
+        column.text.emplace_back(cell);
+        return;
+    }
+    if (cell.empty()) {
+        column.numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+        return;
+    }
+    const auto value = parse_number(cell);
+    if (!value) {
+        throw InputError("parse", "column '" + column.name + "': '" + std::string(cell) + "' is not a number", place);
+    }
+    if (!std::isfinite(*value)) {
+        throw InputError("range", "column '" + column.name + "': '" + std::string(cell) + "' is not finite", place,
+                         "leave the field empty for a missing value");
+    }
+    column.numbers.push_back(heading.to_si(*value));
+}
+
+}  // namespace
+
 Table read_csv(std::string_view bytes, const std::string& source) {
     Table table;
     table.source = source;
@@ -226,14 +271,7 @@ Table read_csv(std::string_view bytes, const std::string& source) {
         }
         const auto cells = split(line, ',');
         if (headings.empty()) {
-            if (cells.size() == 1 && line.find_first_of(";\t") != std::string_view::npos) {
-                throw InputError("parse",
-                                 std::string("the columns are separated by ") +
-                                     (line.find(';') != std::string_view::npos ? "';'" : "tabulators") +
-                                     ", not by commas",
-                                 {source, line_number, {}, {}},
-                                 "separate them by commas, and write numbers with '.' as decimal point");
-            }
+            check_separator(line, cells.size(), {source, line_number, {}, {}});
             for (std::size_t i = 0; i < cells.size(); ++i) {
                 const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
                 headings.push_back(read_heading(cells[i], place));
@@ -246,39 +284,12 @@ Table read_csv(std::string_view bytes, const std::string& source) {
             continue;
         }
         if (cells.size() != headings.size()) {
-            if (const std::string quoted = quoted_decimal_comma(line); !quoted.empty()) {
-                throw InputError("parse", quoted + " is a number with a decimal comma", {source, line_number, {}, {}},
-                                 "write it with '.' as decimal point, without quotes");
-            }
-            throw InputError(
-                "ragged",
-                "this line has " + std::to_string(cells.size()) + " fields, the header " +
-                    std::to_string(headings.size()),
-                {source, line_number, static_cast<std::int64_t>(std::min(cells.size(), headings.size())) + 1, {}},
-                "numbers use '.' as decimal point; a missing value is an empty field");
+            refuse_ragged(line, cells.size(), headings.size(), {source, line_number, {}, {}});
         }
         for (std::size_t i = 0; i < cells.size(); ++i) {
             Column& column = table.columns_[i];
-            const std::string_view cell = trimmed(cells[i]);
-            if (column.is_text()) {
-                column.text.emplace_back(cell);
-                continue;
-            }
-            if (cell.empty()) {
-                column.numbers.push_back(std::numeric_limits<double>::quiet_NaN());
-                continue;
-            }
-            const auto value = parse_number(cell);
-            const Place place{source, line_number, static_cast<std::int64_t>(i) + 1, {}};
-            if (!value) {
-                throw InputError("parse", "column '" + column.name + "': '" + std::string(cell) + "' is not a number",
-                                 place);
-            }
-            if (!std::isfinite(*value)) {
-                throw InputError("range", "column '" + column.name + "': '" + std::string(cell) + "' is not finite",
-                                 place, "leave the field empty for a missing value");
-            }
-            column.numbers.push_back(headings[i].to_si(*value));
+            add_cell(column, headings[i], trimmed(cells[i]),
+                     {source, line_number, static_cast<std::int64_t>(i) + 1, {}});
         }
         table.lines_.push_back(line_number);
         ++table.rows_;

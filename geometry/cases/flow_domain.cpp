@@ -99,6 +99,22 @@ std::string foam_header(const std::string& kind, const std::string& object) {
            ";\n}\n\n";
 }
 
+std::string foam_transport(double kinematic_viscosity) {
+    return foam_header("dictionary", "transportProperties") + "transportModel Newtonian;\nnu " +
+           digits(kinematic_viscosity) + ";\n";
+}
+
+std::string foam_turbulence() {
+    return foam_header("dictionary", "turbulenceProperties") +
+           "simulationType RAS;\nRAS\n{\n    RASModel kOmegaSST;\n    turbulence on;\n    printCoeffs on;\n}\n";
+}
+
+void make_executable(const std::filesystem::path& file) {
+    using std::filesystem::perms;
+    std::filesystem::permissions(file, perms::owner_exec | perms::group_exec | perms::others_exec,
+                                 std::filesystem::perm_options::add);
+}
+
 /// Iterations between two writes, so that a solve that was cut can go on: about an eighth of them. OpenFOAM writes its
 /// last iteration only where the interval divides it; a number without a divisor in between gets no checkpoints.
 int checkpoint_interval(int iterations) {

@@ -48,16 +48,11 @@ public:
         put("system/controlDict", control());
         put("system/fvSchemes", schemes());
         put("system/fvSolution", solution());
-        put("constant/transportProperties", foam_header("dictionary", "transportProperties") +
-                                                "transportModel Newtonian;\nnu " + digits(o_.kinematic_viscosity) +
-                                                ";\n");
-        put("constant/turbulenceProperties",
-            foam_header("dictionary", "turbulenceProperties") +
-                "simulationType RAS;\nRAS\n{\n    RASModel kOmegaSST;\n    turbulence on;\n    printCoeffs on;\n}\n");
+        put("constant/transportProperties", foam_transport(o_.kinematic_viscosity));
+        put("constant/turbulenceProperties", foam_turbulence());
         fields();
         put("Allrun", run());
-        fs::permissions(folder_ / "Allrun", fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec,
-                        fs::perm_options::add);
+        make_executable(folder_ / "Allrun");
         return files_;
     }
 

@@ -9,6 +9,7 @@
 #include "cases/design_figures.h"
 #include "core/counted.h"
 #include "core/file.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
@@ -237,8 +238,7 @@ std::string what_excludes(const tables::DesignSearch& search,
             text += "no shape meets the limits that are known without a run";
         }
         const auto bound = [&](const char* words, double value) {
-            text +=
-                std::abs(value) < 1e299 ? ", " + std::string(words) + " " + core::format_number(value, 4) + unit : "";
+            text += core::is_limit(value) ? ", " + std::string(words) + " " + core::format_number(value, 4) + unit : "";
         };
         bound("wanted at least", limits[k].lower);
         bound("at most", limits[k].upper);

@@ -62,13 +62,7 @@ ClosedLoop loop_of(const RegionLoopOptions& a, const dynamics::Model& model, con
     if (!(o.step > 0) || o.gap_noise < 0 || o.velocity_noise < 0) {
         throw core::UsageError("range", "the sample time is positive, noises are not negative");
     }
-    LoopDesign design;
-    design.rate = a.rate;
-    design.step = o.step;
-    design.gap_noise = o.gap_noise > 0 ? o.gap_noise : design.gap_noise;
-    design.velocity_noise = o.velocity_noise > 0 ? o.velocity_noise : design.velocity_noise;
-    design.velocity_measured = o.velocity_measured;
-    loop.estimator = design_loop_estimator(a.observer, loop.plant, design);
+    loop.estimator = design_loop_estimator(a.observer, loop.plant, estimator::design_for(o, a.rate));
     if (o.feedback == Feedback::estimated && !gives_the_state(loop.estimator)) {
         if (!a.cancel || a.no_velocity) {
             throw core::UsageError(

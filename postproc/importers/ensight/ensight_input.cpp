@@ -79,20 +79,25 @@ std::string EnsightInput::line() {
         if (at_end()) {
             fail("the file ends too early");
         }
-        std::string text;
-        for (int c = in_.get(); c >= 0 && c != '\n'; c = in_.get()) {
-            text += static_cast<char>(c);
-            if (text.size() > 65536) {
-                fail("a line that is too long");
-            }
-        }
-        ++line_;
-        return std::string(core::trimmed(text));
+        return rest_of_line();
     }
     char raw[width];
     read_record(raw, width);
     const std::string text(raw, width);
     return std::string(core::trimmed(std::string_view(text).substr(0, text.find('\0'))));
+}
+
+std::string EnsightInput::rest_of_line() {
+    constexpr std::size_t longest = 65536;
+    std::string text;
+    for (int c = in_.get(); c >= 0 && c != '\n'; c = in_.get()) {
+        text += static_cast<char>(c);
+        if (text.size() > longest) {
+            fail("a line that is too long");
+        }
+    }
+    ++line_;
+    return std::string(core::trimmed(text));
 }
 
 bool EnsightInput::line_begins_with(std::string_view word) {
@@ -104,20 +109,9 @@ std::string EnsightInput::line_as_it_is() {
     if (coding_ != EnsightCoding::text) {
         return line();
     }
-    const auto rest = [&] {
-        std::string text;
-        for (int c = in_.get(); c >= 0 && c != '\n'; c = in_.get()) {
-            text += static_cast<char>(c);
-            if (text.size() > 65536) {
-                fail("a line that is too long");
-            }
-        }
-        ++line_;
-        return std::string(core::trimmed(text));
-    };
     // A number may have left the end of its line behind.
-    std::string text = rest();
-    return text.empty() ? rest() : text;
+    std::string text = rest_of_line();
+    return text.empty() ? rest_of_line() : text;
 }
 
 void EnsightInput::to_step(int step) {

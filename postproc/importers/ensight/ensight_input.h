@@ -45,6 +45,7 @@ public:
     [[noreturn]] void fail(const std::string& what) const;
 
 private:
+    std::string rest_of_line();
     void read_record(void* out, std::uint64_t bytes);
     std::string token();
 

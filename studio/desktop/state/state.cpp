@@ -88,8 +88,13 @@ std::string state_hash(const State& state) { return core::content_hash(json(stat
 namespace {
 
 template <class T>
-json optional_json(const std::optional<T>& value) {
-    return value ? json(*value) : json();
+void put(json& object, const char* key, const T& value) {
+    object[key] = value;
+}
+
+template <class T>
+void put(json& object, const char* key, const std::optional<T>& value) {
+    object[key] = value ? json(*value) : json();
 }
 
 template <class T>
@@ -106,252 +111,165 @@ void take(const json& object, const char* key, std::optional<T>& value) {
     }
 }
 
-json json_of(const DesignView& v) {
-    json variants = json::object();
-    for (const auto& [name, one] : v.variants) {
-        variants[name] = {{"of", one.of}, {"set", one.set}};
-    }
-    return {{"shape", v.shape},     {"gap", v.gap},         {"pitch", v.pitch},   {"speed", v.speed},
-            {"changes", v.changes}, {"variants", variants}, {"before", v.before}, {"before_shape", v.before_shape}};
+// The fields of each view by their keys, once for writing (`v` is const) and reading.
+
+void fields(auto& v, const DesignView& /*kind*/, const auto& field) {
+    field("shape", v.shape);
+    field("gap", v.gap);
+    field("pitch", v.pitch);
+    field("speed", v.speed);
+    field("changes", v.changes);
+    field("before", v.before);
+    field("before_shape", v.before_shape);
 }
 
-DesignView design_from(const json& object) {
-    DesignView v;
-    take(object, "shape", v.shape);
-    take(object, "gap", v.gap);
-    take(object, "pitch", v.pitch);
-    take(object, "speed", v.speed);
-    take(object, "changes", v.changes);
-    take(object, "before", v.before);
-    take(object, "before_shape", v.before_shape);
-    const json variants = object.value("variants", json::object());
-    for (const auto& [name, one] : variants.items()) {
-        v.variants[name] = {one.at("of").get<std::string>(), one.at("set").get<ShapeChanges>()};
-    }
-    return v;
+void fields(auto& v, const FieldView& /*kind*/, const auto& field) {
+    field("array", v.array);
+    field("whole_range", v.whole_range);
+    field("edges", v.edges);
+    field("mirror", v.mirror);
+    field("range", v.range);
+    field("difference", v.difference);
+    field("camera", v.camera);
+    field("view", v.view);
+    field("time", v.time);
+    field("probe", v.probe);
+    field("zones", v.zones);
 }
 
-json json_of(const FieldView& v) {
-    return {{"array", v.array},
-            {"whole_range", v.whole_range},
-            {"edges", v.edges},
-            {"mirror", optional_json(v.mirror)},
-            {"range", optional_json(v.range)},
-            {"difference", v.difference},
-            {"camera", v.camera},
-            {"view", v.view},
-            {"time", optional_json(v.time)},
-            {"probe", optional_json(v.probe)},
-            {"zones", v.zones}};
+void fields(auto& v, const FileReading& /*kind*/, const auto& field) {
+    field("length_unit", v.length_unit);
+    field("units", v.units);
+    field("symmetry", v.symmetry);
+    field("density", v.density);
+    field("zones", v.zones);
 }
 
-FieldView fields_from(const json& object) {
-    FieldView v;
-    take(object, "array", v.array);
-    take(object, "whole_range", v.whole_range);
-    take(object, "edges", v.edges);
-    take(object, "mirror", v.mirror);
-    take(object, "range", v.range);
-    take(object, "difference", v.difference);
-    take(object, "camera", v.camera);
-    take(object, "view", v.view);
-    take(object, "time", v.time);
-    take(object, "probe", v.probe);
-    take(object, "zones", v.zones);
-    return v;
+void fields(auto& v, const TableView& /*kind*/, const auto& field) {
+    field("net_weight", v.net_weight);
+    field("virtual_mass", v.virtual_mass);
+    field("shown", v.shown);
+    field("held", v.held);
+    field("logarithmic", v.logarithmic);
 }
 
-json json_of(const FileReading& v) {
-    return {{"length_unit", v.length_unit},
-            {"units", v.units},
-            {"symmetry", v.symmetry},
-            {"density", optional_json(v.density)},
-            {"zones", v.zones}};
+void fields(auto& v, const RegionView& /*kind*/, const auto& field) {
+    field("set", v.set);
+    field("cells", v.cells);
+    field("show", v.show);
+    field("axes", v.axes);
+    field("sweep", v.sweep);
+    field("steps", v.steps);
+    field("draws", v.draws);
+    field("gap_noise", v.gap_noise);
+    field("velocity_noise", v.velocity_noise);
+    field("drag_error", v.drag_error);
+    field("logarithmic", v.logarithmic);
+    field("duration", v.duration);
+    field("start", v.start);
 }
 
-FileReading reading_from(const json& object) {
-    FileReading v;
-    take(object, "length_unit", v.length_unit);
-    take(object, "units", v.units);
-    take(object, "symmetry", v.symmetry);
-    take(object, "density", v.density);
-    take(object, "zones", v.zones);
-    return v;
+void fields(auto& v, const ExportRecord& /*kind*/, const auto& field) {
+    field("table", v.table);
+    field("made_of", v.made_of);
+    field("format", v.format);
+    field("name", v.name);
+    field("frame", v.frame);
+    field("number", v.number);
+    field("max_error", v.max_error);
+    field("range", v.range);
 }
 
-json json_of(const TableView& v) {
-    return {{"net_weight", optional_json(v.net_weight)},
-            {"virtual_mass", optional_json(v.virtual_mass)},
-            {"shown", v.shown},
-            {"held", v.held},
-            {"logarithmic", optional_json(v.logarithmic)}};
+void fields(auto& v, const MeasuredRecord& /*kind*/, const auto& field) {
+    field("model", v.model);
+    field("data", v.data);
+    field("channels", v.channels);
+    field("clock", v.clock);
 }
 
-TableView table_from(const json& object) {
-    TableView v;
-    take(object, "net_weight", v.net_weight);
-    take(object, "virtual_mass", v.virtual_mass);
-    take(object, "shown", v.shown);
-    take(object, "held", v.held);
-    take(object, "logarithmic", v.logarithmic);
-    return v;
+void fields(auto& v, const ExploreView& /*kind*/, const auto& field) {
+    field("x", v.x);
+    field("y", v.y);
+    field("brush", v.brush);
+    field("shapes", v.shapes);
 }
 
-json json_of(const RegionView& v) {
-    return {{"set", v.set},
-            {"cells", v.cells},
-            {"show", v.show},
-            {"axes", v.axes},
-            {"sweep", v.sweep},
-            {"steps", v.steps},
-            {"draws", v.draws},
-            {"gap_noise", v.gap_noise},
-            {"velocity_noise", v.velocity_noise},
-            {"drag_error", v.drag_error},
-            {"logarithmic", optional_json(v.logarithmic)},
-            {"duration", optional_json(v.duration)},
-            {"start", optional_json(v.start)}};
+void fields(auto& v, const State& /*kind*/, const auto& field) {
+    field("study", v.study);
+    field("files", v.files);
+    field("workspace", v.workspace);
+    field("selection", v.selection);
+    field("last", v.last);
+    field("stars", v.stars);
+    field("accepted", v.accepted);
 }
 
-RegionView region_from(const json& object) {
-    RegionView v;
-    take(object, "set", v.set);
-    take(object, "cells", v.cells);
-    take(object, "show", v.show);
-    take(object, "axes", v.axes);
-    take(object, "sweep", v.sweep);
-    take(object, "steps", v.steps);
-    take(object, "draws", v.draws);
-    take(object, "gap_noise", v.gap_noise);
-    take(object, "velocity_noise", v.velocity_noise);
-    take(object, "drag_error", v.drag_error);
-    take(object, "logarithmic", v.logarithmic);
-    take(object, "duration", v.duration);
-    take(object, "start", v.start);
-    return v;
+template <class View>
+json json_of(const View& v) {
+    json object = json::object();
+    fields(v, v, [&object](const char* key, const auto& value) { put(object, key, value); });
+    return object;
 }
 
-json json_of(const ExportRecord& v) {
-    return {{"table", v.table},
-            {"made_of", v.made_of},
-            {"format", v.format},
-            {"name", v.name},
-            {"frame", v.frame},
-            {"number", v.number},
-            {"max_error", optional_json(v.max_error)},
-            {"range", v.range}};
+template <class View>
+void read_fields(const json& object, View& v) {
+    fields(v, v, [&object](const char* key, auto& value) { take(object, key, value); });
 }
 
-ExportRecord export_from(const json& object) {
-    ExportRecord v;
-    take(object, "table", v.table);
-    take(object, "made_of", v.made_of);
-    take(object, "format", v.format);
-    take(object, "name", v.name);
-    take(object, "frame", v.frame);
-    take(object, "number", v.number);
-    take(object, "max_error", v.max_error);
-    take(object, "range", v.range);
-    return v;
-}
-
-json json_of(const MeasuredRecord& v) {
-    return {{"model", v.model}, {"data", v.data}, {"channels", v.channels}, {"clock", v.clock}};
-}
-
-MeasuredRecord measured_from(const json& object) {
-    MeasuredRecord v;
-    take(object, "model", v.model);
-    take(object, "data", v.data);
-    take(object, "channels", v.channels);
-    take(object, "clock", v.clock);
-    return v;
-}
-
-json json_of(const ExploreView& v) {
-    json vary = json::array();
-    for (const auto& one : v.vary) {
-        vary.push_back({{"key", one.key}, {"values", one.values}});
-    }
-    return {{"x", v.x}, {"y", v.y}, {"brush", v.brush}, {"vary", vary}, {"shapes", v.shapes}};
+/// The views that there are several of, by name.
+void named_views(auto& state, const auto& each) {
+    each("tables", state.tables);
+    each("exports", state.exports);
+    each("measured", state.measured);
+    each("readings", state.readings);
+    each("regions", state.regions);
 }
 
 State read_state(const json& object) {
     State state;
-    take(object, "study", state.study);
-    take(object, "files", state.files);
-    take(object, "workspace", state.workspace);
-    take(object, "selection", state.selection);
-    take(object, "last", state.last);
-    take(object, "stars", state.stars);
-    take(object, "accepted", state.accepted);
-    state.design = design_from(object.value("design", json::object()));
-    state.fields = fields_from(object.value("fields", json::object()));
-    const json explore = object.value("explore", json::object());
-    take(explore, "x", state.explore.x);
-    take(explore, "y", state.explore.y);
-    take(explore, "brush", state.explore.brush);
-    take(explore, "shapes", state.explore.shapes);
+    read_fields(object, state);
+    const json design = object.value("design", json::object()), explore = object.value("explore", json::object());
+    read_fields(design, state.design);
+    const json variants = design.value("variants", json::object());
+    for (const auto& [name, one] : variants.items()) {
+        state.design.variants[name] = {one.at("of").get<std::string>(), one.at("set").get<ShapeChanges>()};
+    }
+    read_fields(object.value("fields", json::object()), state.fields);
+    read_fields(explore, state.explore);
     for (const auto& one : explore.value("vary", json::array())) {
         state.explore.vary.push_back(
             {one.at("key").get<std::string>(), one.at("values").get<std::vector<std::string>>()});
     }
-    const json tables = object.value("tables", json::object());
-    for (const auto& [name, one] : tables.items()) {
-        state.tables[name] = table_from(one);
-    }
-    const json exports = object.value("exports", json::object());
-    for (const auto& [file, one] : exports.items()) {
-        state.exports[file] = export_from(one);
-    }
-    const json measured = object.value("measured", json::object());
-    for (const auto& [name, one] : measured.items()) {
-        state.measured[name] = measured_from(one);
-    }
-    const json readings = object.value("readings", json::object());
-    for (const auto& [file, one] : readings.items()) {
-        state.readings[file] = reading_from(one);
-    }
-    const json regions = object.value("regions", json::object());
-    for (const auto& [name, one] : regions.items()) {
-        state.regions[name] = region_from(one);
-    }
+    named_views(state, [&object](const char* kind, auto& views) {
+        const json all = object.value(kind, json::object());
+        for (const auto& [name, one] : all.items()) {
+            read_fields(one, views[name]);
+        }
+    });
     return state;
 }
 
 }  // namespace
 
 void to_json(json& object, const State& state) {
-    object = {{"study", state.study},
-              {"files", state.files},
-              {"workspace", state.workspace},
-              {"selection", state.selection},
-              {"last", state.last},
-              {"stars", state.stars},
-              {"accepted", state.accepted},
-              {"design", json_of(state.design)},
-              {"fields", json_of(state.fields)},
-              {"explore", json_of(state.explore)},
-              {"tables", json::object()},
-              {"readings", json::object()},
-              {"regions", json::object()},
-              {"measured", json::object()},
-              {"exports", json::object()}};
-    for (const auto& [file, one] : state.exports) {
-        object["exports"][file] = json_of(one);
+    object = json_of(state);
+    object["design"] = json_of(state.design);
+    json& variants = object["design"]["variants"] = json::object();
+    for (const auto& [name, one] : state.design.variants) {
+        variants[name] = {{"of", one.of}, {"set", one.set}};
     }
-    for (const auto& [name, one] : state.measured) {
-        object["measured"][name] = json_of(one);
+    object["fields"] = json_of(state.fields);
+    object["explore"] = json_of(state.explore);
+    json& vary = object["explore"]["vary"] = json::array();
+    for (const auto& one : state.explore.vary) {
+        vary.push_back({{"key", one.key}, {"values", one.values}});
     }
-    for (const auto& [name, one] : state.tables) {
-        object["tables"][name] = json_of(one);
-    }
-    for (const auto& [file, one] : state.readings) {
-        object["readings"][file] = json_of(one);
-    }
-    for (const auto& [name, one] : state.regions) {
-        object["regions"][name] = json_of(one);
-    }
+    named_views(state, [&object](const char* kind, const auto& views) {
+        json& all = object[kind] = json::object();
+        for (const auto& [name, one] : views) {
+            all[name] = json_of(one);
+        }
+    });
 }
 
 State state_from_json(const json& object) {

@@ -255,6 +255,16 @@ ControlLaw hold_at(double reference_gap, double virtual_mass, double pole1, doub
     return law;
 }
 
+LoopDesign design_for(const LoopOptions& loop, double rate) {
+    LoopDesign design;
+    design.rate = rate;
+    design.step = loop.step;
+    design.gap_noise = loop.gap_noise > 0 ? loop.gap_noise : design.gap_noise;
+    design.velocity_noise = loop.velocity_noise > 0 ? loop.velocity_noise : design.velocity_noise;
+    design.velocity_measured = loop.velocity_measured;
+    return design;
+}
+
 LoopRun close_loop(const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
                    const LoopOptions& options) {
     Loop loop(plant, law, estimator, options, options.gap, options.velocity);

@@ -85,6 +85,9 @@ struct LoopOptions {
         true;  ///< without a velocity sensor the feedback needs an estimator that gives heave_velocity
 };
 
+/// For the sample time and the sensors of a loop; a sensor without noise is taken as LoopDesign says.
+LoopDesign design_for(const LoopOptions& loop, double rate);
+
 struct LoopRun {
     std::vector<double> time, gap, velocity, command, force, disturbance, ground_force, drag_force, ground_estimate,
         drag_estimate, total_estimate;

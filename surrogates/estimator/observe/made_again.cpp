@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/predict.h"
@@ -26,7 +27,7 @@ core::NamedRange gaps_of(const dynamics::Model& model, const dynamics::Measureme
         }
     }
     const dynamics::GapRange table = dynamics::lift_gap_range(model);
-    const bool bounded = table.lower > -1e299 && table.upper < 1e299;
+    const bool bounded = core::is_limit(table.lower) && core::is_limit(table.upper);
     if (data.kind == dynamics::MeasurementKind::steady && bounded) {
         low = table.lower;
         high = table.upper;

@@ -122,6 +122,17 @@ std::vector<std::string> labels_for(const LinearFilter& filter, const AugmentedM
     return labels;
 }
 
+/// What follows from the filter: the total force, its poles, what it can tell apart. Throws where it is unstable.
+void finish(ObserverDesign& design, const AugmentedModel& model, const Matrix& dynamics) {
+    LinearFilter& f = design.filter;
+    add_total(f);
+    design.poles = eigenvalues(dynamics);
+    design.discrete_poles = eigenvalues(f.phi);
+    refuse_unstable(design.poles, design.discrete_poles, f.step);
+    design.separability = separability(model);
+    design.labels = labels_for(f, model, design.separability);
+}
+
 }  // namespace
 
 Matrix reduced_gain(const AugmentedModel& model, const Poles& poles) {
@@ -163,12 +174,7 @@ ObserverDesign reduced_observer(const AugmentedModel& model, const Matrix& gain,
     f.output_constant = Vector(nz, 0.0);
     f.start = zeta_start.empty() ? Vector(nz, 0.0) : zeta_start;
     f.start_feed = -1.0 * gain;
-    add_total(f);
-    design.poles = eigenvalues(dynamics);
-    design.discrete_poles = eigenvalues(f.phi);
-    refuse_unstable(design.poles, design.discrete_poles, step);
-    design.separability = separability(model);
-    design.labels = labels_for(f, model, design.separability);
+    finish(design, model, dynamics);
     return design;
 }
 
@@ -199,12 +205,7 @@ ObserverDesign full_observer(const AugmentedModel& model, const std::vector<std:
     if (start.empty()) {  // begin at what is measured
         f.start_feed = c.transposed();
     }
-    add_total(f);
-    design.poles = eigenvalues(dynamics);
-    design.discrete_poles = eigenvalues(f.phi);
-    refuse_unstable(design.poles, design.discrete_poles, step);
-    design.separability = separability(model);
-    design.labels = labels_for(f, model, design.separability);
+    finish(design, model, dynamics);
     return design;
 }
 

@@ -43,6 +43,11 @@ void add_remark(ForceTable::Impl& table, const std::string& text,
     table.remarks.push_back({severity, text, {table.source, {}, {}, {}}});
 }
 
+std::shared_ptr<ForceTable::Impl> with_remark(std::shared_ptr<ForceTable::Impl> table, const std::string& text) {
+    add_remark(*table, text);
+    return table;
+}
+
 /// Many points of a full grid with errors. Interpolation that misses points left out by no more than their errors
 /// stays; else a process of their averages is tried at the points themselves, each of which is one of many that made
 /// it.
@@ -53,13 +58,11 @@ std::shared_ptr<const ForceTable::Impl> table_of_many_points(const SetPoints& po
     const double stated = root_mean_square(points.sigma, known);
     const auto in_words = [&](double v) { return core::format_number(v, 3) + " " + points.unit; };
     if (std::isnan(of_interpolation)) {
-        add_remark(*interpolated, none_inside);
-        return interpolated;
+        return with_remark(interpolated, none_inside);
     }
     if (!(of_interpolation > 1.05 * stated)) {  // independent errors alone would make it 1.1 to 1.3 times as much
-        add_remark(*interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) +
-                                      ", no worse than their stated errors");
-        return interpolated;
+        return with_remark(interpolated, "interpolated: left-out points are met within " + in_words(of_interpolation) +
+                                             ", no worse than their stated errors");
     }
     auto process = fit_gaussian_process(points, nullptr);
     std::vector<double> misses(points.x.size(), 0.0);
@@ -70,12 +73,8 @@ std::shared_ptr<const ForceTable::Impl> table_of_many_points(const SetPoints& po
     const std::string scores = "points are missed by " + in_words(of_process) +
                                " by a Gaussian process of their averages, left-out ones by " +
                                in_words(of_interpolation) + " by interpolation";
-    if (of_process < of_interpolation) {
-        add_remark(*process, "Gaussian process chosen: " + scores);
-        return process;
-    }
-    add_remark(*interpolated, "interpolated: " + scores);
-    return interpolated;
+    return of_process < of_interpolation ? with_remark(process, "Gaussian process chosen: " + scores)
+                                         : with_remark(interpolated, "interpolated: " + scores);
 }
 
 }  // namespace
@@ -138,13 +137,11 @@ private:
 std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const Fits& fits) {
     auto interpolated = fits.interpolation();
     if (!points.has_sigma()) {
-        add_remark(*interpolated,
-                   "interpolated: the points fill a grid and state no errors, so they are taken as exact");
-        return interpolated;
+        return with_remark(interpolated,
+                           "interpolated: the points fill a grid and state no errors, so they are taken as exact");
     }
     if (points.x.size() < points.axes.size() + 3) {
-        add_remark(*interpolated, "interpolated: too few points to judge by leaving one out");
-        return interpolated;
+        return with_remark(interpolated, "interpolated: too few points to judge by leaving one out");
     }
     if (points.x.size() > many) {
         return table_of_many_points(points, interpolated);
@@ -152,17 +149,15 @@ std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const
     const auto known = fits.misses();
     const double of_interpolation = root_mean_square(known, known);
     if (std::isnan(of_interpolation)) {
-        add_remark(*interpolated, none_inside);
-        return interpolated;
+        return with_remark(interpolated, none_inside);
     }
     // Points that scatter as their errors say are missed by 1.1 to 1.3 of these when left out; ones that are met much
     // better do not scatter.
     const double stated = root_mean_square(points.sigma, known);
     if (of_interpolation < follows_closely * stated) {
-        add_remark(*interpolated, "interpolated: left-out points are met within " +
-                                      core::format_number(of_interpolation, 3) + " " + points.unit +
-                                      ", well within their stated errors, so the points do not scatter");
-        return interpolated;
+        return with_remark(interpolated, "interpolated: left-out points are met within " +
+                                             core::format_number(of_interpolation, 3) + " " + points.unit +
+                                             ", well within their stated errors, so the points do not scatter");
     }
     std::vector<double> misses;
     auto process = fits.process(&misses);
@@ -173,12 +168,8 @@ std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const
     const std::string scores = "leave-one-out error " + core::format_number(of_process, 3) + " " + points.unit +
                                " by Gaussian process, " + core::format_number(of_interpolation, 3) + " " + points.unit +
                                " by interpolation";
-    if (of_process < of_interpolation) {
-        add_remark(*process, "Gaussian process chosen: " + scores);
-        return process;
-    }
-    add_remark(*interpolated, "interpolated: " + scores);
-    return interpolated;
+    return of_process < of_interpolation ? with_remark(process, "Gaussian process chosen: " + scores)
+                                         : with_remark(interpolated, "interpolated: " + scores);
 }
 
 }  // namespace
