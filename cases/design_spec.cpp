@@ -7,6 +7,7 @@
 
 #include "cases/volume_fault.h"
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/exact_body.h"
@@ -254,7 +255,7 @@ void limit_from(const TomlTable& table, DesignSpec& spec) {
         throw core::InputError("range", table.path_of("at_least") + " is above at_most: no design can meet both",
                                table.place("at_least"));
     }
-    spec.limits.push_back({response, lower.value_or(-1e300), upper.value_or(1e300)});
+    spec.limits.push_back({response, lower.value_or(-core::no_limit), upper.value_or(core::no_limit)});
     spec.limit_places.push_back(table.place());
 }
 
@@ -400,7 +401,7 @@ double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::s
             return -1;
         }
         const double volume = geometry::ExactBody(shape).volume();
-        double worst = spec.most_volume < 1e299 ? volume / spec.most_volume - 1 : -1;
+        double worst = core::is_limit(spec.most_volume) ? volume / spec.most_volume - 1 : -1;
         if (spec.least_volume > 0) {
             worst = std::max(worst, 1 - volume / spec.least_volume);
         }

@@ -1,11 +1,12 @@
 #include "cases/volume_fault.h"
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "geometry/body/exact_body.h"
 
 namespace underbody::cases {
 
-bool limits_volume(const DesignSpec& spec) { return spec.least_volume > 0 || spec.most_volume < 1e299; }
+bool limits_volume(const DesignSpec& spec) { return spec.least_volume > 0 || core::is_limit(spec.most_volume); }
 
 std::string volume_fault(const DesignSpec& spec, const geometry::BodyShape& shape) {
     if (!limits_volume(spec)) {

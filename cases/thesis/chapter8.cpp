@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cases/thesis/parts.h"
+#include "core/no_limit.h"
 #include "core/random.h"
 #include "surrogates/estimator/control/bounds.h"
 #include "surrogates/estimator/observe/observer.h"
@@ -369,7 +370,7 @@ void regions(Study& study) {
     bars("8-10", "8-10: training region, grid data with P3", grid_error);
     bars("8-11", "8-11: training region, time-evolved data uncorrected", time_error);
     const auto spread = [](const std::vector<double>& v) {
-        double low = 1e300, high = 0;
+        double low = core::no_limit, high = 0;
         for (const double e : v) {
             low = e > 0 ? std::min(low, e) : low;
             high = std::max(high, e);

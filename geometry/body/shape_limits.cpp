@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "geometry/body/exact_body.h"
 
@@ -282,7 +283,7 @@ std::vector<OutlinePoint> flat_base_outline(const BodyShape& shape, std::size_t 
 }
 
 double inside_distance(const std::vector<OutlinePoint>& outline, double x, double y) {
-    double nearest = 1e300;
+    double nearest = core::no_limit;
     for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
         const OutlinePoint &a = outline[i], &b = outline[i + 1];
         const double ex = b.x - a.x, ey = b.y - a.y, length = std::hypot(ex, ey);

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/no_limit.h"
+
 namespace underbody::geometry {
 
 namespace {
@@ -81,7 +83,7 @@ private:
     void order_along_curve() {
         const Box box = bounding_box(mesh_);
         const Vec3 size = box.upper - box.lower;
-        const double scale = 2097151.0 / std::max({size.x, size.y, size.z, 1e-300});
+        const double scale = 2097151.0 / std::max({size.x, size.y, size.z, core::least_divisor});
         std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(mesh_.triangles.size());
         for (std::size_t t = 0; t < keys.size(); ++t) {
             const Vec3 p = (mesh_.centre(t) - box.lower) * scale;

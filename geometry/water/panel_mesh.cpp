@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "geometry/body/mass_properties.h"
 #include "geometry/mesh/nearest_point.h"
 
@@ -46,7 +47,7 @@ public:
         : surface_(surface), options_(options), progress_(progress) {
         const Box box = bounding_box(surface);
         low_ = box.lower.z;
-        height_ = std::max(box.upper.z - box.lower.z, 1e-300);
+        height_ = core::never_zero(box.upper.z - box.lower.z);
         fill();
         for (std::size_t k = 0; k < surface.patch_names.size(); ++k) {
             on_patch_.emplace_back(surface, static_cast<std::int32_t>(k));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "studio/figures/colour_scale.h"
 
 namespace underbody::studio {
@@ -250,8 +251,8 @@ void paint_arrows(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const core::Figur
     const std::size_t count = std::min({arrows.x.size(), arrows.y.size(), arrows.dx.size(), arrows.dy.size()});
     const QRect box = x.axisRect()->rect();
     // Pixels for one unit of each axis, so that directions are right on the drawn picture.
-    const double per_x = box.width() / std::max(1e-300, x.range().size());
-    const double per_y = box.height() / std::max(1e-300, y.range().size());
+    const double per_x = box.width() / core::never_zero(x.range().size());
+    const double per_y = box.height() / core::never_zero(y.range().size());
     for (std::size_t i = 0; i < count; ++i) {
         const double right = arrows.dx[i] * per_x;
         const double up = arrows.dy[i] * per_y;

@@ -13,54 +13,10 @@ namespace {
 
 constexpr double no_finding = 30;  ///< of a log weight: what is no finding keeps its place in the list and nothing else
 
-}  // namespace
-
-std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects) {
-    std::vector<std::size_t> all(hypotheses.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return best_hypothesis(hypotheses, effects, all);
-}
-
-std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects,
-                            const std::vector<std::size_t>& among) {
-    std::size_t best = hypotheses.size();
-    for (const std::size_t i : among) {
-        if (hypotheses[i].hypothesis.names.size() <= effects &&
-            (best == hypotheses.size() ||
-             hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
-                 hypotheses[best].score() - 2 * std::log(hypotheses[best].hypothesis.prior))) {
-            best = i;
-        }
-    }
-    return best;
-}
-
-double structure_left(const SmoothFit& rest, double explained) {
-    const double left = std::max(0.0, rest.gain - rest.degrees);
-    return left / std::max(left + std::max(explained, 0.0), 1e-12);
-}
-
-Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest,
-                      const Calibration& calibration) {
-    Attribution result;
-    const auto most = static_cast<std::size_t>(calibration.most_effects);
-    std::vector<bool> finding(hypotheses.size());
-    std::vector<std::size_t> findings;
-    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-        finding[i] = differs_from_neutral(hypotheses[i], calibration.neutral_sigmas);
-        if (finding[i]) {
-            findings.push_back(i);
-        }
-    }
-    const bool any = !findings.empty();
-    result.chosen = any ? best_hypothesis(hypotheses, most, findings) : best_hypothesis(hypotheses, most);
-    if (result.chosen >= hypotheses.size()) {
-        result.verdict = gate_p < calibration.gate ? "unknown" : "none";
-        result.none_probability = result.verdict == "none" ? 1 : 0;
-        result.unknown_probability = 1 - result.none_probability;
-        return result;
-    }
-    const FittedHypothesis& best = hypotheses[result.chosen];
+/// Weights of the names beside that of the likeliest, which is one; `finding`: differs from doing nothing.
+std::vector<Attribution::Share> shares_by_names(const std::vector<FittedHypothesis>& hypotheses,
+                                                const FittedHypothesis& best, const std::vector<bool>& finding,
+                                                bool any, const Calibration& calibration) {
     // laws of nature differ in form from the catalogue's: a share of what is explained counts as one unit of evidence
     const double temperature = 1 + calibration.form_share * std::max(0.0, best.explained);
     // of the forms of a name the likeliest stands for it; as logarithms, so that the order holds where nothing else is
@@ -87,15 +43,70 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
             known->second = {i, weight};
         }
     }
-    double total = 0;
+    std::vector<Attribution::Share> shares;
     for (const auto& [names, share] : by_names) {
-        result.shares.push_back(share);
+        shares.push_back(share);
     }
-    std::stable_sort(result.shares.begin(), result.shares.end(),
+    std::stable_sort(shares.begin(), shares.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
-    const double largest = result.shares.front().probability;
-    for (Attribution::Share& share : result.shares) {
+    const double largest = shares.front().probability;
+    for (Attribution::Share& share : shares) {
         share.probability = std::exp(share.probability - largest);
+    }
+    return shares;
+}
+
+}  // namespace
+
+std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects) {
+    std::vector<std::size_t> all(hypotheses.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return best_hypothesis(hypotheses, effects, all);
+}
+
+std::size_t best_hypothesis(const std::vector<FittedHypothesis>& hypotheses, std::size_t effects,
+                            const std::vector<std::size_t>& among) {
+    std::size_t best = hypotheses.size();
+    for (const std::size_t i : among) {
+        if (hypotheses[i].hypothesis.names.size() <= effects &&
+            (best == hypotheses.size() ||
+             hypotheses[i].score() - 2 * std::log(hypotheses[i].hypothesis.prior) <
+                 hypotheses[best].score() - 2 * std::log(hypotheses[best].hypothesis.prior))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+double structure_left(const SmoothFit& rest, double explained) {
+    const double left = std::max(0.0, rest.gain - rest.degrees);
+    return left / std::max(left + std::max(explained, 0.0), least_gain);
+}
+
+Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest,
+                      const Calibration& calibration) {
+    Attribution result;
+    const auto most = static_cast<std::size_t>(calibration.most_effects);
+    std::vector<bool> finding(hypotheses.size());
+    std::vector<std::size_t> findings;
+    for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+        finding[i] = differs_from_neutral(hypotheses[i], calibration.neutral_sigmas);
+        if (finding[i]) {
+            findings.push_back(i);
+        }
+    }
+    const bool any = !findings.empty();
+    result.chosen = any ? best_hypothesis(hypotheses, most, findings) : best_hypothesis(hypotheses, most);
+    if (result.chosen >= hypotheses.size()) {
+        result.verdict = gate_p < calibration.gate ? "unknown" : "none";
+        result.none_probability = result.verdict == "none" ? 1 : 0;
+        result.unknown_probability = 1 - result.none_probability;
+        return result;
+    }
+    const FittedHypothesis& best = hypotheses[result.chosen];
+    result.shares = shares_by_names(hypotheses, best, finding, any, calibration);
+    double total = 0;
+    for (const Attribution::Share& share : result.shares) {
         total += share.probability;
     }
     const double left = structure_left(rest, best.explained);

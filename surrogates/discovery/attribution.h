@@ -37,6 +37,7 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
                       const Calibration& calibration);
 
 /// Share of all structure that a smooth function still finds (`rest`) beside what explains `explained`.
+constexpr double least_gain = 1e-12;  ///< in -2 log likelihood: nothing is explained
 double structure_left(const SmoothFit& rest, double explained);
 
 /// The hypothesis of least score among those with at most `effects` names.

@@ -33,6 +33,12 @@ const std::vector<CalibratedNumber>& calibrated_numbers() {
          "chosen: all effects are asked once more, by run; not set on simulations", "2026-11-22", unmeasured},
         {"by_run_surprise", &C::by_run_surprise, "saves time: no chance above it passes the gate", "2026-11-22",
          unmeasured},
+        {"given_to_unknown", &C::given_to_unknown, "chosen: four to one, not set on simulations", "2026-11-22",
+         unmeasured},
+        {"left_undecided", &C::left_undecided, "definition: even odds", "2026-11-22", unmeasured},
+        {"pair_rest_share", &C::pair_rest_share, "the static bench on four rigs; its seeds were not written down",
+         "2026-11-22", unmeasured},
+        {"correct_chance", &C::correct_chance, "definition: one in a hundred", "2026-11-23", unmeasured},
         {"correction_reach", &C::correction_reach, "definition: all but two states in a thousand", "2026-11-22",
          unmeasured}};
     return list;

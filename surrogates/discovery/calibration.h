@@ -27,6 +27,11 @@ struct Calibration {
     double by_run_sigmas = 4;        ///< its own errors that at least one run lies from the middle of all
     double by_run_gate_share = 0.1;  ///< asked for beside the gate: its chance must be below that share of it
     double by_run_surprise = 3;      ///< -log10 of the nominal chance below which it is not looked into
+    double given_to_unknown = 0.8;   ///< stated for "something unknown" where a name or none leaves what a law explains
+    double left_undecided =
+        0.5;  ///< stated at most for a name, or for none, that the held-out readings do not bear out
+    double pair_rest_share = 0.15;    ///< share of unknown_share that two laws together may leave: they bend to much
+    double correct_chance = 0.01;     ///< a quantity is corrected where its structure comes from noise less often
     double correction_reach = 0.998;  ///< quantile of a correction's force over the states seen that it may not exceed
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "surrogates/dynamics/basin/region.h"
 
 namespace underbody::discovery {
@@ -12,7 +13,7 @@ std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vec
     for (const Balance& one : before) {
         EquilibriumPair pair{one.name, one.stable, one.gap, std::nan("")};
         const auto distance = [&](const Balance& other) {
-            return std::abs(other.gap - one.gap) / std::max(other.gap + one.gap, 1e-300);
+            return std::abs(other.gap - one.gap) / core::never_zero(other.gap + one.gap);
         };
         auto nearest = after.end();
         for (auto other = after.begin(); other != after.end(); ++other) {
@@ -35,8 +36,9 @@ std::vector<EquilibriumPair> paired(const std::vector<Balance>& before, std::vec
 void compare_regions(const dynamics::Model& before, const dynamics::Model& after, double low, double high,
                      const dynamics::Conditions& held, std::size_t cells, core::Progress& progress,
                      Consequence& result) {
+    constexpr double speed = 0.1;  // m/s, of the releases whose ends are compared
     dynamics::RegionOptions options;
-    options.axes = {{"gap", low, high}, {"heave_velocity", -0.1, 0.1}};
+    options.axes = {{"gap", low, high}, {"heave_velocity", -speed, speed}};
     options.columns = options.rows = cells;
     options.refine = false;
     options.held = held;

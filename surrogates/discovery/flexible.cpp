@@ -4,16 +4,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
+
+namespace {
+
+constexpr double same_place = 1e-9;       ///< of the range: closer values are one
+constexpr double least_span = 1e-12;      ///< of the range, between a knot and the last
+constexpr double least_variance = 1e-24;  ///< of a column: below it does not vary
+constexpr double dependent = 1e-7;        ///< pivot of a column, scaled to one, that says no more than those before it
+constexpr double nothing_left = 1e-6;     ///< of a column's length, beside those that are taken
+constexpr double steady = 1e-9;           ///< of the largest of a diagonal, added to it: it can be inverted
+constexpr double barely_steady = 1e-12;   ///< likewise where the numbers are wanted as they are
+constexpr double ridge_step = 0.75;       ///< decades between the ridges that are tried
+
+}  // namespace
 
 SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns) {
     std::vector<double> distinct = values;
     std::sort(distinct.begin(), distinct.end());
     const double range = distinct.empty() ? 0 : distinct.back() - distinct.front();
     distinct.erase(
-        std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= 1e-9 * range; }),
+        std::unique(distinct.begin(), distinct.end(), [&](double a, double b) { return b - a <= same_place * range; }),
         distinct.end());
     const std::size_t count = distinct.size() < 2 ? 0 : std::min(columns, distinct.size() - 1);
     if (count == 0) {
@@ -24,7 +38,7 @@ SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns)
         knots_.push_back(quantile(distinct, static_cast<double>(k) / static_cast<double>(count)));
     }
     for (const double knot : knots_) {
-        per_span_.push_back(1 / std::max((knots_.back() - knot) / width_, 1e-12));
+        per_span_.push_back(1 / std::max((knots_.back() - knot) / width_, least_span));
     }
     shift_.assign(count, 0);
     scale_.assign(count, 1);
@@ -42,7 +56,7 @@ SplineBasis::SplineBasis(const std::vector<double>& values, std::size_t columns)
     for (std::size_t k = 0; k < count; ++k) {
         shift_[k] = sum[k] / n;
         const double variance = square[k] / n - shift_[k] * shift_[k];
-        scale_[k] = variance > 1e-24 ? 1 / std::sqrt(variance) : 0;
+        scale_[k] = variance > least_variance ? 1 / std::sqrt(variance) : 0;
     }
 }
 
@@ -196,7 +210,7 @@ DesignMatrix orthonormal(const DesignMatrix& matrix) {
         }
     }
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-    qr.setThreshold(1e-7);
+    qr.setThreshold(dependent);
     const Eigen::Index rank = qr.rank();
     const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(scaled.rows(), rank);
     result.columns = static_cast<std::size_t>(rank);
@@ -208,7 +222,7 @@ std::vector<double> orthonormal_mix(const DesignMatrix& matrix) {
     const Eigen::Map<const Eigen::MatrixXd> a(matrix.values.data(), static_cast<Eigen::Index>(matrix.rows),
                                               static_cast<Eigen::Index>(matrix.columns));
     Eigen::MatrixXd gram = a.transpose() * a / static_cast<double>(std::max<std::size_t>(matrix.rows, 1));
-    gram.diagonal().array() += 1e-9 * gram.diagonal().maxCoeff() + 1e-300;
+    gram.diagonal().array() += steady * gram.diagonal().maxCoeff() + core::least_divisor;
     const Eigen::MatrixXd mix = gram.llt().matrixU().solve(Eigen::MatrixXd::Identity(gram.rows(), gram.cols()));
     return {mix.data(), mix.data() + mix.size()};
 }
@@ -232,7 +246,7 @@ DesignMatrix orthonormal_beside(const DesignMatrix& taken, const DesignMatrix& m
     for (Eigen::Index k = 0; k < left.cols(); ++k) {
         const double size = left.col(k).norm();
         left.col(k) -= q * (q.transpose() * left.col(k));
-        if (left.col(k).norm() < 1e-6 * size) {
+        if (left.col(k).norm() < nothing_left * size) {
             left.col(k).setZero();
         }
     }
@@ -258,7 +272,7 @@ std::vector<std::vector<double>> moves_without_groups(const DesignMatrix& jacobi
         const Eigen::Index count = static_cast<Eigen::Index>(begin[g + 1] - begin[g]);
         const Eigen::MatrixXd own = j.middleRows(from, count);
         Eigen::MatrixXd others = normal - own.transpose() * own;
-        others.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff() + 1e-12 + ridge;
+        others.diagonal().array() += steady * normal.diagonal().maxCoeff() + barely_steady + ridge;
         const Eigen::VectorXd move = others.ldlt().solve(own.transpose() * r.segment(from, count) - slope);
         moves.emplace_back(move.data(), move.data() + move.size());
     }
@@ -272,7 +286,7 @@ std::vector<double> grouped_variances(const DesignMatrix& jacobian, const std::v
     const Eigen::Map<const Eigen::VectorXd> r(residuals.data(), static_cast<Eigen::Index>(residuals.size()));
     const Eigen::Index n = j.cols();
     Eigen::MatrixXd normal = j.transpose() * j;
-    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() + 1e-300;
+    normal.diagonal().array() += barely_steady * normal.diagonal().maxCoeff() + core::least_divisor;
     const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
     Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(n, n);
     const std::size_t groups = begin.size() - 1;
@@ -316,14 +330,14 @@ RidgeFit ridge_fit(const DesignMatrix& matrix, const std::vector<double>& y) {
     const Eigen::VectorXd s = svd.singularValues();
     const Eigen::VectorXd c = svd.matrixU().transpose() * b;
     const double outside = std::max(0.0, b.squaredNorm() - c.squaredNorm());
-    double best = 1e300;
+    double best = core::no_limit;
     double ridge = 0;
     for (int step = -10; step <= 8; ++step) {
-        const double trial = s.size() > 0 ? s(0) * s(0) * std::pow(10.0, 0.75 * step - 4) : 0;
+        const double trial = s.size() > 0 ? s(0) * s(0) * std::pow(10.0, ridge_step * step - 4) : 0;
         double rest = outside;
         double degrees = 0;
         for (Eigen::Index k = 0; k < s.size(); ++k) {
-            const double keep = s(k) * s(k) / (s(k) * s(k) + trial + 1e-300);
+            const double keep = s(k) * s(k) / (s(k) * s(k) + trial + core::least_divisor);
             rest += (1 - keep) * (1 - keep) * c(k) * c(k);
             degrees += keep;
         }
@@ -337,8 +351,8 @@ RidgeFit ridge_fit(const DesignMatrix& matrix, const std::vector<double>& y) {
     Eigen::VectorXd shrunk(s.size());
     fit.residual_square = outside;
     for (Eigen::Index k = 0; k < s.size(); ++k) {
-        const double keep = s(k) * s(k) / (s(k) * s(k) + ridge + 1e-300);
-        shrunk(k) = s(k) > 1e-12 * s(0) ? keep * c(k) / s(k) : 0;
+        const double keep = s(k) * s(k) / (s(k) * s(k) + ridge + core::least_divisor);
+        shrunk(k) = s(k) > barely_steady * s(0) ? keep * c(k) / s(k) : 0;
         fit.residual_square += (1 - keep) * (1 - keep) * c(k) * c(k);
         fit.degrees += keep;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/no_limit.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/model/effect.h"
 
@@ -67,8 +68,8 @@ PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, do
     const double middle = std::accumulate(fall.begin(), fall.end(), 0.0) / n;
     result.mean = middle;
     if (fall.size() < 3) {
-        result.low = -1e300;
-        result.high = 1e300;
+        result.low = -core::no_limit;
+        result.high = core::no_limit;
         return with_readings(result, before, after, tail);
     }
     double square = 0;

@@ -12,6 +12,14 @@ using dynamics::Channel;
 
 namespace {
 
+constexpr double off_declared = 0.2;  ///< typical values beside a declared number at which its search begins
+constexpr double off_neutral = 0.3;   ///< and beside the value at which an effect does nothing
+constexpr double typical_exponent = 0.2;
+constexpr double typical_share = 0.1;  ///< of a declared factor
+constexpr double least_factor = 1e-6;  ///< a declared factor of nothing is searched as if it were this
+constexpr double lowest_share = 0.05, highest_share = 20;  ///< of a declared factor: beyond it is another rig
+constexpr double named_prior = 0.05;                       ///< of a declared number whose effect has a name of its own
+
 /// What a search looks at, and how the effects answer it.
 struct Look {
     const dynamics::Model& model;
@@ -179,7 +187,7 @@ Hypothesis of_declared(const std::string& parameter, double declared, double low
     hypothesis.uses = {use};
     hypothesis.parameters = {{"value", "1", lower, upper, declared, typical}};
     hypothesis.slots = {{0, 0}};
-    hypothesis.starts = {{declared + 0.2 * typical}};
+    hypothesis.starts = {{declared + off_declared * typical}};
     hypothesis.depends_on = depends_on;
     return hypothesis;
 }
@@ -208,14 +216,14 @@ std::vector<Hypothesis> declared_numbers(const dynamics::Model& model, const std
             const bool named =
                 scale.channel == Channel::speed || (scale.channel == Channel::jet_voltage && scale.exponent != 0);
             if ((!named || (scale.channel == Channel::speed && sources > 1)) && varies(varying, name)) {
-                list.push_back(
-                    of_declared(prefix + "scale." + name + ".exponent", scale.exponent, -10, 10, 0.2, {name}));
-                list.back().prior = named ? 0.05 : 1;  // the power of the speed has a name of its own
+                list.push_back(of_declared(prefix + "scale." + name + ".exponent", scale.exponent, -10, 10,
+                                           typical_exponent, {name}));
+                list.back().prior = named ? named_prior : 1;  // the power of the speed has a name of its own
             }
         }
         if (sources > 1) {
             list.push_back(of_declared(prefix + "factor", source.factor, -1000, 1000,
-                                       0.1 * std::max(std::abs(source.factor), 1e-6), depends_on));
+                                       typical_share * std::max(std::abs(source.factor), least_factor), depends_on));
         }
     }
     return list;
@@ -295,7 +303,7 @@ void start_heave(Hypothesis& hypothesis, const dynamics::EffectSearch& search) {
     if (search.starts.empty() && !search.scanned) {
         hypothesis.starts.emplace_back();
         for (const FitParameter& p : hypothesis.parameters) {
-            hypothesis.starts.front().push_back(std::min(p.start + 0.3 * p.typical, p.upper));
+            hypothesis.starts.front().push_back(std::min(p.start + off_neutral * p.typical, p.upper));
         }
     }
 }
@@ -351,13 +359,13 @@ void add_declared_scale(const Look& look, const std::string& quantity, std::vect
     }
     const dynamics::ForceSource& source = look.model.forces[which];
     const std::string prefix = "force." + std::to_string(which + 1) + ".";
-    list.push_back(of_declared(prefix + "factor", source.factor, 0.05 * source.factor, 20 * source.factor,
-                               0.1 * source.factor, {"gap"}));
+    list.push_back(of_declared(prefix + "factor", source.factor, lowest_share * source.factor,
+                               highest_share * source.factor, typical_share * source.factor, {"gap"}));
     for (const dynamics::ForceScale& scale : source.scales) {
         if (std::find(look.varying.begin(), look.varying.end(), scale.channel) != look.varying.end()) {
             const std::string channel = dynamics::channel_name(scale.channel);
-            list.push_back(
-                of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10, 0.2, {"gap", channel}));
+            list.push_back(of_declared(prefix + "scale." + channel + ".exponent", scale.exponent, -6, 10,
+                                       typical_exponent, {"gap", channel}));
         }
     }
 }
@@ -440,7 +448,7 @@ Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model) {
     dynamics::HeaveTerms terms;
     std::vector<double> numbers;
     for (const FitParameter& p : hypothesis.parameters) {
-        numbers.push_back(p.start + 0.1 * p.typical);
+        numbers.push_back(p.start + typical_share * p.typical);
     }
     for (const dynamics::EffectUse& use : hypothesis.with(numbers)) {
         dynamics::effect(use.name).add_to(terms, use, model);

@@ -5,9 +5,19 @@
 #include <cmath>
 #include <limits>
 
+#include "core/no_limit.h"
+
 namespace underbody::discovery {
 
 namespace {
+
+constexpr double difference_step = 1e-3;   ///< of a typical value, for slopes
+constexpr double least_curvature = 1e-12;  ///< in units of typical values: the damping of a number nothing depends on
+constexpr double least_damping = 1e-9,
+                 first_damping = 1e-6;  ///< Levenberg and Marquardt: after a step that helped; after one that did not
+constexpr double damping_change = 0.1;
+constexpr double least_information = 1e-14;  ///< of the largest eigenvalue: below, the data do not say
+constexpr double at_bound = 1e-9;            ///< of the range
 
 class Solver {
 public:
@@ -80,7 +90,7 @@ private:
         const Eigen::Map<const Eigen::VectorXd> at(fit.residuals.data(), rows);
         for (std::size_t j = 0; j < count_; ++j) {
             const FitParameter& parameter = parameters_[j];
-            double h = 1e-3 * parameter.typical;
+            double h = difference_step * parameter.typical;
             if (fit.parameters[j] + h > parameter.upper) {
                 h = -h;
             }
@@ -123,7 +133,7 @@ private:
                 damped(k, k) = 1;
                 slope(k) = 0;
             } else {
-                damped(k, k) += damping * std::max(normal_(k, k), 1e-12) + 1e-12;
+                damped(k, k) += damping * std::max(normal_(k, k), least_curvature) + least_curvature;
             }
         }
         return -damped.ldlt().solve(slope);
@@ -150,10 +160,10 @@ private:
                 fit.residuals = std::move(r);
                 fit.log_determinant = log_determinant;
                 fit.cost = reached;
-                damping = std::max(damping * 0.1, 1e-9);
+                damping = std::max(damping * damping_change, least_damping);
                 return go_on ? Taken::far : Taken::small;
             }
-            damping = std::max(damping, 1e-6) * 10;
+            damping = std::max(damping, first_damping) * 10;
         }
         return Taken::none;
     }
@@ -168,7 +178,7 @@ private:
         const double largest = eigen.eigenvalues().maxCoeff();
         Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(normal_.rows(), normal_.cols());
         for (Eigen::Index k = 0; k < normal_.rows(); ++k) {
-            const double value = std::max(eigen.eigenvalues()(k), 1e-14 * largest + 1e-300);
+            const double value = std::max(eigen.eigenvalues()(k), least_information * largest + core::least_divisor);
             inverse += eigen.eigenvectors().col(k) * eigen.eigenvectors().col(k).transpose() / value;
         }
         for (std::size_t i = 0; i < count_; ++i) {
@@ -178,8 +188,8 @@ private:
             }
             fit.sigma[i] = std::sqrt(fit.covariance[i * count_ + i]);
             const double width = parameters_[i].upper - parameters_[i].lower;
-            fit.at_bound = fit.at_bound || fit.parameters[i] - parameters_[i].lower < 1e-9 * width ||
-                           parameters_[i].upper - fit.parameters[i] < 1e-9 * width;
+            fit.at_bound = fit.at_bound || fit.parameters[i] - parameters_[i].lower < at_bound * width ||
+                           parameters_[i].upper - fit.parameters[i] < at_bound * width;
         }
     }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/html.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/wording.h"
@@ -13,15 +14,17 @@ namespace underbody::discovery {
 
 namespace {
 
+constexpr double nearly_all = 99.5;  ///< %: above, and below 100 less that, a rounded number would say 0 or 100
+
 std::string percent(double share) {
     const double value = 100 * share;
-    return value > 99.5 && share < 1 ? "> 99 %"
-           : value < 0.5             ? "< 1 %"
-                                     : core::format_number(std::round(value), 3) + " %";
+    return value > nearly_all && share < 1 ? "> 99 %"
+           : value < 100 - nearly_all      ? "< 1 %"
+                                           : core::format_number(std::round(value), 3) + " %";
 }
 
 std::string in_noise(const ErrorEstimate& estimate, double noise) {
-    return core::format_number(estimate.rmse / std::max(noise, 1e-300), 3);
+    return core::format_number(estimate.rmse / core::never_zero(noise), 3);
 }
 
 std::string with_interval(const ErrorEstimate& e) {

@@ -17,6 +17,8 @@ namespace underbody::discovery {
 
 namespace {
 
+constexpr double least_noise = 1e-7;  ///< m, m/s: of a sensor; less makes weights that mean nothing
+
 /// Bins of equal numbers of values. `correlated`: how many neighbouring values tell one story.
 ResidualCurve binned(const std::string& variable, const std::vector<double>& x, const std::vector<double>& y,
                      std::size_t bins, double correlated) {
@@ -87,8 +89,8 @@ std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamic
     residual.quantity = "lift_force";
     residual.problems = records.problems;
     HeaveNoise noise;
-    noise.gap = data.declared_noise("gap").value_or(std::max(records.gap_noise, 1e-7));
-    noise.velocity = data.declared_noise("heave_velocity").value_or(std::max(records.velocity_noise, 1e-7));
+    noise.gap = data.declared_noise("gap").value_or(std::max(records.gap_noise, least_noise));
+    noise.velocity = data.declared_noise("heave_velocity").value_or(std::max(records.velocity_noise, least_noise));
     std::vector<double> gap, velocity, force;
     double variance = 0;
     core::FigureCurve over_time;

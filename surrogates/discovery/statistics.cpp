@@ -8,8 +8,18 @@
 #include <limits>
 
 #include "core/random.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
+
+namespace {
+
+constexpr double beyond = 0.025;      ///< chance beyond each end of an interval of 95 %
+constexpr double most_decades = 300;  ///< of a chance that is a number still
+constexpr double settled_odds = 20;
+constexpr double no_separation = 1e-9;
+
+}  // namespace
 
 Interval wilson_interval(std::size_t successes, std::size_t trials) {
     if (trials == 0) {
@@ -30,7 +40,7 @@ double robust_sigma(const std::vector<double>& values) {
     for (const double value : values) {
         distances.push_back(std::abs(value - middle));
     }
-    return 1.482602218505602 * median(std::move(distances));
+    return dynamics::sigma_of_median_distance * median(std::move(distances));
 }
 
 double mean(std::span<const double> values) {
@@ -63,16 +73,18 @@ double f_tail(double x, double dof_above, double dof_below) {
     return boost::math::cdf(boost::math::complement(boost::math::fisher_f(dof_above, dof_below), x));
 }
 
-double chi_squared_limit(double tail, double dof) {
-    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(dof), tail));
-}
-
 double surprise(double gain, double count) {
     if (count <= 0) {
         return 0;
     }
     const double tail = chi_squared_tail(gain, count);
-    return tail > 1e-290 ? -std::log10(tail) : 290 + gain / 10;
+    return tail > std::pow(10.0, -most_decades) ? -std::log10(tail) : most_decades + gain / 10;
+}
+
+double chance_to_settle(double separation) {
+    return separation > no_separation
+               ? 0.5 * std::erfc(-(0.5 * separation - std::log(settled_odds) / separation) / std::sqrt(2.0))
+               : 0;
 }
 
 double sum_of_squares(std::span<const double> values) {
@@ -134,11 +146,11 @@ ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const s
     }
     // few groups: the percentile interval is known to be short by sqrt((n-1)/n) and by t over z
     const double n = static_cast<double>(groups);
-    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), 0.025));
+    const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), beyond));
     const double widen = std::sqrt(n / (n - 1)) * t / 1.959963984540054;
     const double centre = std::log(estimate.rmse);
-    estimate.low = std::exp(centre + widen * (quantile(logs, 0.025) - centre));
-    estimate.high = std::exp(centre + widen * (quantile(logs, 0.975) - centre));
+    estimate.low = std::exp(centre + widen * (quantile(logs, beyond) - centre));
+    estimate.high = std::exp(centre + widen * (quantile(logs, 1 - beyond) - centre));
     estimate.low = std::min(estimate.low, estimate.rmse);
     estimate.high = std::max(estimate.high, estimate.rmse);
     return estimate;

@@ -20,7 +20,8 @@ Interval wilson_interval(std::size_t successes, std::size_t trials);
 
 using core::median;
 using core::quantile;
-/// 1.4826 times the median distance from the median: the standard deviation of normal values, deaf to outliers.
+/// sigma_of_median_distance times the median distance from the median: the standard deviation of normal values,
+/// deaf to outliers.
 double robust_sigma(const std::vector<double>& values);
 double mean(std::span<const double> values);
 double root_mean_square(std::span<const double> values);
@@ -29,14 +30,15 @@ double root_mean_square(std::span<const double> values);
 double chi_squared_tail(double x, double dof);
 /// P(X > x) for X of Fisher's F distribution.
 double f_tail(double x, double dof_above, double dof_below);
-/// The x that a chi-squared variable exceeds with probability `tail`.
-double chi_squared_limit(double tail, double dof);
 
 /// -log10 of the chance that `count` squared normal values sum to more than `gain`; goes on where the chance is too
 /// small for a number.
 double surprise(double gain, double count);
 
 double sum_of_squares(std::span<const double> values);
+
+/// Chance that readings in which two laws lie `separation` standard deviations apart reach odds of 20 for the true one.
+double chance_to_settle(double separation);
 
 /// Autocorrelation of a series at a lag; 0 when it is constant.
 double autocorrelation(std::span<const double> values, std::size_t lag);

@@ -102,8 +102,6 @@ std::vector<Trial> separated(const HeaveExperiment& experiment, const std::vecto
     return list;
 }
 
-double power_of(double d) { return d > 1e-9 ? 0.5 * std::erfc(-(0.5 * d - std::log(20.0) / d) / std::sqrt(2.0)) : 0; }
-
 bool delays_only(const FittedHypothesis& one, const dynamics::Model& model) {
     return one.hypothesis.names.size() == 1 && touch_of(one.hypothesis, model).delay;
 }
@@ -159,7 +157,7 @@ void next_heave_experiment(const HeaveExperiment& experiment, const std::vector<
     const std::vector<Trial> list = separated(experiment, a, b);
     const Trial& trial = list.front();
     const double repeats = 8;
-    result.next_power = power_of(trial.separation * std::sqrt(repeats));
+    result.next_power = chance_to_settle(trial.separation * std::sqrt(repeats));
     result.next_experiment =
         purpose + ": " + trial.text + ", 10 s, " + core::format_number(repeats, 2) +
         " times; odds of 20 to 1 or better with probability " + core::format_number(result.next_power, 2) +

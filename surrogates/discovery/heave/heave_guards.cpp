@@ -130,7 +130,7 @@ void HeaveLoop::guard() {
             const bool better = smooth && falls(named, *smooth);
             if (better || share_left(declared, named) > calibration_.most_left) {
                 result_.verdict = "unknown";
-                give_to_unknown(attribution_, 0.8);
+                give_to_unknown(attribution_, calibration_.given_to_unknown);
                 if (better) {
                     kept = std::move(*smooth);
                 }
@@ -147,7 +147,7 @@ void HeaveLoop::guard() {
         if (smooth && falls(declared, *smooth)) {
             kept = std::move(*smooth);
         } else {
-            cap_probabilities(attribution_, 0.5);
+            cap_probabilities(attribution_, calibration_.left_undecided);
         }
     }
     if (result_.verdict != "effect" || kept.uses.empty()) {
@@ -180,7 +180,7 @@ void HeaveLoop::guard() {
 /// No name: silent, until the rest is found to be more than noise.
 void HeaveLoop::refuse(const std::string& reason) {
     warn(reason);
-    cap_probabilities(attribution_, 0.5);
+    cap_probabilities(attribution_, calibration_.left_undecided);
     result_.verdict = "none";
     result_.none_probability = attribution_.none_probability;
 }
@@ -210,7 +210,7 @@ void HeaveLoop::call_rest_unknown(Answer& kept, Answer& declared) {
     if (kept.uses.empty() && (whole_.variables.empty() || gate_ >= calibration_.gate)) {
         whole_.variables = {variable_name(Variable::time)};  // as a random force would: no variable explains it
     }
-    rule_out_none(attribution_, kept.uses.empty() ? 0.5 : 0.8);
+    rule_out_none(attribution_, kept.uses.empty() ? calibration_.left_undecided : calibration_.given_to_unknown);
     result_.none_probability = 0;
 }
 

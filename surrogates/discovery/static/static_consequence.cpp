@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
@@ -92,7 +93,7 @@ Consequence static_consequence(const dynamics::Model& before, const std::vector<
         result.text += "No lift over a gap was measured: there is no equilibrium to compare.";
         return result;
     }
-    double low = 1e300, high = -1e300;
+    double low = core::no_limit, high = -core::no_limit;
     for (const Observation& one : experiment.observations()) {
         low = std::min(low, one.at[Channel::gap]);
         high = std::max(high, one.at[Channel::gap]);

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/discovery/attribution.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/static/static_checks.h"
 #include "surrogates/discovery/static/static_consequence.h"
@@ -43,7 +45,7 @@ void StaticLoop::measure_error() {
         result_.error.push_back(change);
     }
     std::stable_sort(result_.error.begin(), result_.error.end(), [](const ErrorChange& a, const ErrorChange& b) {
-        return a.before.rmse / std::max(a.noise, 1e-300) > b.before.rmse / std::max(b.noise, 1e-300);
+        return a.before.rmse / core::never_zero(a.noise) > b.before.rmse / core::never_zero(b.noise);
     });
     if (!result_.error.empty()) {
         result_.rest.twins = result_.error.front().noise;
@@ -52,7 +54,7 @@ void StaticLoop::measure_error() {
 }
 
 std::string StaticLoop::evidence(const FittedHypothesis& one) const {
-    const double structure = std::max({whole_.gain, one.explained, 1e-12});
+    const double structure = std::max({whole_.gain, one.explained, least_gain});
     return "explains " + core::format_number(100 * std::max(0.0, one.explained) / structure, 3) +
            " % of the structure in the residual (fall of -2 log likelihood " + core::format_number(one.explained, 4) +
            " for " + std::to_string(one.hypothesis.parameters.size()) + " free numbers)" +

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "surrogates/discovery/static/static_checks.h"
@@ -105,9 +106,12 @@ void StaticLoop::split() {
     });
 }
 
+// A length over which an effect fades with the gap is searched between the gaps measured, where they are apart enough.
+constexpr double range_for_length = 1.5, inside_low = 1.2, inside_high = 0.85;
+
 void StaticLoop::keep_lengths_inside(std::vector<Hypothesis>& candidates) const {
-    double low = 1e300;
-    double high = -1e300;
+    double low = core::no_limit;
+    double high = -core::no_limit;
     for (const std::size_t i : train_) {
         low = std::min(low, experiment_.observations()[i].at[Channel::gap]);
         high = std::max(high, experiment_.observations()[i].at[Channel::gap]);
@@ -117,13 +121,14 @@ void StaticLoop::keep_lengths_inside(std::vector<Hypothesis>& candidates) const 
             FitParameter& parameter = candidate.parameters[j];
             const Hypothesis::Slot& slot = candidate.slots[j];
             const dynamics::EffectInfo& info = dynamics::effect(candidate.uses[slot.use].name).info();
-            if (info.parameters[slot.value].within_gaps && low > 0 && high > 1.5 * low) {
-                parameter.lower = std::max(parameter.lower, 1.2 * low);
-                parameter.upper = std::min(parameter.upper, 0.85 * high);
+            if (info.parameters[slot.value].within_gaps && low > 0 && high > range_for_length * low) {
+                parameter.lower = std::max(parameter.lower, inside_low * low);
+                parameter.upper = std::min(parameter.upper, inside_high * high);
                 parameter.start = std::clamp(parameter.start, parameter.lower, parameter.upper);
                 parameter.typical = std::min(parameter.typical, 0.5 * (parameter.upper - parameter.lower));
-                const double inside[] = {std::pow(low, 0.75) * std::pow(high, 0.25), std::sqrt(low * high),
-                                         std::pow(low, 0.25) * std::pow(high, 0.75)};
+                constexpr double quarter = 0.25;  // of the way, by ratio
+                const double inside[] = {std::pow(low, 1 - quarter) * std::pow(high, quarter), std::sqrt(low * high),
+                                         std::pow(low, quarter) * std::pow(high, 1 - quarter)};
                 for (std::size_t k = 0; k < candidate.starts.size(); ++k) {
                     candidate.starts[k][j] = inside[k % 3];
                 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/wording.h"
@@ -13,14 +14,19 @@ using dynamics::Channel;
 
 namespace {
 
+constexpr double same_everywhere =
+    0.02;  ///< standard deviations a reading: two laws that lie no further apart say the same
+constexpr double worth_measuring = 0.3;  ///< of the largest separation: set points that are proposed with it
+constexpr double most_repeats = 1e6;     ///< that are told
+
 struct Candidate {
     dynamics::Conditions at;
     double separation = 0;  ///< of the two explanations, in standard deviations, all measured quantities together
 };
 
 std::vector<double> levels(const StaticExperiment& experiment, Channel channel) {
-    double low = 1e300;
-    double high = -1e300;
+    double low = core::no_limit;
+    double high = -core::no_limit;
     for (const Observation& one : experiment.observations()) {
         low = std::min(low, one.at[channel]);
         high = std::max(high, one.at[channel]);
@@ -87,8 +93,28 @@ std::string where(const StaticExperiment& experiment, const Candidate& candidate
     return text;
 }
 
-/// Chance that n-fold evidence of total separation `d` (in standard deviations) reaches odds of 20 for the truth.
-double power_of(double d) { return d > 1e-9 ? 0.5 * std::erfc(-(0.5 * d - std::log(20.0) / d) / std::sqrt(2.0)) : 0; }
+/// As the rig is to run them, each so many times.
+void add_set_points(const StaticExperiment& experiment, const std::vector<Candidate>& taken, int repeats,
+                    Discovery& result) {
+    std::vector<Candidate> order;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        for (std::size_t k = 0; k < taken.size(); ++k) {
+            // up one time and down the next, so that time does not run with any channel
+            order.push_back(taken[repeat % 2 == 0 ? k : taken.size() - 1 - k]);
+        }
+    }
+    for (const Channel channel : experiment.varying()) {
+        if (channel == Channel::time || channel == Channel::temperature) {
+            continue;
+        }
+        std::vector<double> values;
+        for (const Candidate& candidate : order) {
+            values.push_back(candidate.at[channel]);
+        }
+        result.next_set_points.add_numbers(dynamics::channel_name(channel), dynamics::channel_unit(channel),
+                                           std::move(values));
+    }
+}
 
 }  // namespace
 
@@ -96,7 +122,7 @@ std::string static_told_apart(const StaticExperiment& experiment, const FittedHy
                               const FittedHypothesis& rival) {
     const std::vector<Candidate> list = separated(experiment, chosen.hypothesis.with(chosen.fit.parameters),
                                                   rival.hypothesis.with(rival.fit.parameters));
-    if (list.front().separation < 0.02) {
+    if (list.front().separation < same_everywhere) {
         return "nothing in the measured range: both say the same at every set point; look at the rig (is there such a "
                "part?)";
     }
@@ -104,7 +130,7 @@ std::string static_told_apart(const StaticExperiment& experiment, const FittedHy
     return "they differ most at " + where(experiment, list.front()) + ": by " +
            core::format_number(list.front().separation, 3) + " standard deviations a reading, so " +
            (repeats <= 1 ? "one reading there decides"
-                         : core::format_number(std::min(repeats, 1e6), 4) + " readings there decide");
+                         : core::format_number(std::min(repeats, most_repeats), 4) + " readings there decide");
 }
 
 void next_static_experiment(const StaticExperiment& experiment, const std::vector<FittedHypothesis>& fitted,
@@ -124,7 +150,7 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
         for (std::size_t k = 1; k < attribution.shares.size(); ++k) {
             rival = &fitted[attribution.shares[k].hypothesis];
             b = rival->hypothesis.with(rival->fit.parameters);
-            if (separated(experiment, a, b).front().separation > 0.02) {
+            if (separated(experiment, a, b).front().separation > same_everywhere) {
                 break;
             }
         }
@@ -145,7 +171,7 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
     const std::vector<Candidate> list = separated(experiment, a, b);
     std::vector<Candidate> taken;
     for (const Candidate& candidate : list) {
-        if (taken.size() < 8 && candidate.separation > 0.3 * list.front().separation) {
+        if (taken.size() < 8 && candidate.separation > worth_measuring * list.front().separation) {
             taken.push_back(candidate);
         }
     }
@@ -154,29 +180,12 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
     for (const Candidate& candidate : taken) {
         square += repeats * candidate.separation * candidate.separation;
     }
-    result.next_power = power_of(std::sqrt(square));
+    result.next_power = chance_to_settle(std::sqrt(square));
     result.next_experiment = purpose + ": " + std::to_string(taken.size()) + " set points, " +
                              core::format_number(repeats, 2) + " readings each in mixed order, first at " +
                              where(experiment, list.front()) + "; " + settling_text(result.next_power) +
                              " (next-experiment.csv)";
-    std::vector<Candidate> order;
-    for (int repeat = 0; repeat < static_cast<int>(repeats); ++repeat) {
-        for (std::size_t k = 0; k < taken.size(); ++k) {
-            // up one time and down the next, so that time does not run with any channel
-            order.push_back(taken[repeat % 2 == 0 ? k : taken.size() - 1 - k]);
-        }
-    }
-    for (const Channel channel : experiment.varying()) {
-        if (channel == Channel::time || channel == Channel::temperature) {
-            continue;
-        }
-        std::vector<double> values;
-        for (const Candidate& candidate : order) {
-            values.push_back(candidate.at[channel]);
-        }
-        result.next_set_points.add_numbers(dynamics::channel_name(channel), dynamics::channel_unit(channel),
-                                           std::move(values));
-    }
+    add_set_points(experiment, taken, static_cast<int>(repeats), result);
 }
 
 }  // namespace underbody::discovery

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <set>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
@@ -31,7 +33,7 @@ Shown shown(Channel channel) {
         return {1.0 / 3600, "h"};
     }
     if (channel == Channel::pitch) {
-        return {180 / 3.14159265358979323846, "deg"};
+        return {180 / std::numbers::pi, "deg"};
     }
     return {1, dynamics::channel_unit(channel)};
 }
@@ -174,9 +176,9 @@ core::Figure error_figure(const Discovery& result) {
                                             ? ", free run"
                                             : ", " + core::format_number(change.horizon, 3) + " s";
             bars.labels.push_back(change.channel + horizon);
-            bars.values.push_back(estimate.rmse / std::max(change.noise, 1e-300));
-            bars.errors.push_back(std::min(0.25 * (estimate.high - estimate.low), estimate.rmse) /
-                                  std::max(change.noise, 1e-300));
+            bars.values.push_back(estimate.rmse / core::never_zero(change.noise));
+            bars.errors.push_back(std::min((estimate.high - estimate.low) / 4, estimate.rmse) /
+                                  core::never_zero(change.noise));
             smallest = std::min(smallest, bars.values.back());
             largest = std::max(largest, bars.values.back() + bars.errors.back());
         }
@@ -184,9 +186,10 @@ core::Figure error_figure(const Discovery& result) {
     }
     // a free run may err a thousand times more than the next two seconds: all of them are to be seen
     if (std::isfinite(largest) && tables::spans_decades(smallest, largest)) {
+        constexpr double room_above = 1.5;
         figure.y.logarithmic = true;
         figure.y.lower = 0.5 * smallest;
-        figure.y.upper = 1.5 * largest;
+        figure.y.upper = room_above * largest;
     }
     return figure;
 }

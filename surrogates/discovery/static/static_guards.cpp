@@ -119,7 +119,7 @@ void StaticLoop::guard() {
         if (!falls(nullptr, chosen)) {
             uses_.clear();
             result_.verdict = "none";
-            cap_probabilities(attribution_, 0.5);
+            cap_probabilities(attribution_, calibration_.left_undecided);
             result_.problems.push_back(
                 {core::Problem::Severity::warning,
                  chosen.hypothesis.label() +
@@ -128,15 +128,15 @@ void StaticLoop::guard() {
                  {}});
         } else if (!rest_is_noise(named) && correct(&chosen)) {
             result_.verdict = "unknown";
-            give_to_unknown(attribution_, 0.8);
+            give_to_unknown(attribution_, calibration_.given_to_unknown);
         }
     } else if (result_.verdict == "unknown" && !correct(nullptr)) {
-        cap_probabilities(attribution_, 0.5);
+        cap_probabilities(attribution_, calibration_.left_undecided);
     }
     result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     if (result_.verdict == "none" && !result_.rest.is_noise) {
         result_.verdict = "unknown";
-        rule_out_none(attribution_, correct(nullptr) ? 0.8 : 0.5);
+        rule_out_none(attribution_, correct(nullptr) ? calibration_.given_to_unknown : calibration_.left_undecided);
         result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
     }
     rest_in_noise_ = std::sqrt(std::max(0.0, std::pow(held_out_errors(uses_).rmse(), 2) - 1));

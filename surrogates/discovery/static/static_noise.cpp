@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/no_limit.h"
 #include "core/random.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -17,6 +18,12 @@ namespace underbody::discovery {
 using dynamics::Channel;
 
 namespace {
+
+constexpr double waves_chance = 1e-6;  ///< of what long waves explain beside a drift: several in a day are no noise
+constexpr double colour_chance =
+    0.003;                             ///< of the autocorrelation seen (Ljung and Box 1978): above, the noise is white
+constexpr double least_left = 0.02;    ///< share of the variance that the neighbours must leave
+constexpr double least_noise = 1e-12;  ///< in the quantity's unit, of readings that do not scatter at all
 
 /// Takes the mean of each set point off every column and off y; degrees lost are the number of set points seen.
 std::size_t take_means_off(const std::vector<std::size_t>& set_point, DesignMatrix& columns, std::vector<double>& y) {
@@ -76,9 +83,9 @@ public:
             const double few_degrees = degrees_;
             fit_out(14);
             const double columns = few_degrees - degrees_;
-            const bool waves =
-                columns > 0 && degrees_ > 20 &&
-                f_tail((few_rest - rest_) / columns / std::max(rest_ / degrees_, 1e-300), columns, degrees_) < 1e-6;
+            const bool waves = columns > 0 && degrees_ > 20 &&
+                               f_tail((few_rest - rest_) / columns / core::never_zero(rest_ / degrees_), columns,
+                                      degrees_) < waves_chance;
             if (!waves) {
                 fit_out(4);
             }
@@ -182,7 +189,7 @@ void StaticExperiment::estimate_noise() {
                      {}});
             }
         } else {
-            figure.value = std::max(scatter.of_all(), 1e-12);
+            figure.value = std::max(scatter.of_all(), least_noise);
             figure.from = "estimated";
         }
         noise_[quantities_[q]] = figure;
@@ -219,7 +226,7 @@ bool StaticExperiment::find_colour(const std::vector<std::size_t>& chosen, const
                 r(static_cast<Eigen::Index>(k) - 1) = rho;
             }
         }
-        if (chi_squared_tail(portmanteau, 6) > 0.003) {
+        if (chi_squared_tail(portmanteau, 6) > colour_chance) {
             continue;
         }
         Eigen::MatrixXd toeplitz(order, order);
@@ -230,7 +237,7 @@ bool StaticExperiment::find_colour(const std::vector<std::size_t>& chosen, const
         }
         const Eigen::VectorXd a = toeplitz.ldlt().solve(r);
         const double share = 1 - a.dot(r);
-        if (share > 0.02 && share < 1) {
+        if (share > least_left && share < 1) {
             colour_[q].assign(a.data(), a.data() + order);
             colour_[q].push_back(std::sqrt(share));
             found = true;

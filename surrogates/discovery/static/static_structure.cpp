@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/no_limit.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
@@ -13,6 +14,10 @@ namespace underbody::discovery {
 using dynamics::Channel;
 
 namespace {
+
+constexpr double shows_structure = 1e-3;  ///< chance below which a quantity's smooth function counts beside the others'
+constexpr double least_logarithm = 1e-12;
+constexpr double same_level = 1e-4;  ///< of the range
 
 DesignMatrix design(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
                     const std::vector<Channel>& variables, std::size_t columns_each) {
@@ -44,10 +49,7 @@ DesignMatrix design(const StaticExperiment& experiment, const std::vector<std::s
     return matrix;
 }
 
-double evidence(double gain, std::size_t columns) {
-    const double tail = chi_squared_tail(gain, static_cast<double>(columns));
-    return tail > 1e-300 ? -std::log10(tail) : 300 + gain / 10;
-}
+double evidence(double gain, std::size_t columns) { return surprise(gain, static_cast<double>(columns)); }
 
 }  // namespace
 
@@ -151,7 +153,7 @@ SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
     std::vector<SmoothFit> by_quantity(quantities_);
     std::vector<const Test*> chosen(quantities_, nullptr);
     for (std::size_t q = 0; q < quantities_; ++q) {
-        double best = 1e300;
+        double best = core::no_limit;
         double strongest = 0;
         std::size_t count = 0;
         SmoothFit& own = by_quantity[q];
@@ -181,7 +183,7 @@ SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
     whole.gain_of_row.assign(residuals.size(), 0);
     for (std::size_t q = 0; q < quantities_; ++q) {
         const SmoothFit& own = by_quantity[q];
-        if (own.p < 1e-3 || own.p == smallest) {
+        if (own.p < shows_structure || own.p == smallest) {
             if (chosen[q] != nullptr) {
                 add_gain_of_rows(chosen[q]->basis, residuals, whole.gain_of_row);
             }
@@ -232,7 +234,7 @@ double simulated_gate(const StaticStructure& structure, const std::vector<Design
             const std::size_t from = random.below(n);
             const double sign = random.uniform() < 0.5 ? -1 : 1;
             for (std::size_t k = 0; k < block && begin + k < n; ++k) {
-                drawn[begin + k] = sign * noise_like[(from + k) % n] / std::max(size, 1e-300);
+                drawn[begin + k] = sign * noise_like[(from + k) % n] / core::never_zero(size);
             }
         }
         const double of_noise = statistic(drawn);
@@ -307,7 +309,7 @@ public:
 
 private:
     [[nodiscard]] double scaled(std::size_t v, double value) const {
-        return logarithmic_[v] ? std::log(std::max(value, 1e-12)) : value;
+        return logarithmic_[v] ? std::log(std::max(value, least_logarithm)) : value;
     }
     int power_;
     std::vector<bool> logarithmic_;
@@ -392,8 +394,9 @@ std::vector<CorrectionForm> correction_forms(const std::vector<Channel>& variabl
 std::vector<double> grid_lines(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const double range = values.back() - values.front();
-    values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a < 1e-4 * range; }),
-                 values.end());
+    values.erase(
+        std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a < same_level * range; }),
+        values.end());
     std::vector<double> lines;
     if (values.size() <= 24) {
         for (std::size_t k = 0; k < values.size(); ++k) {
@@ -444,7 +447,7 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
         }
     }
     std::unique_ptr<CorrectionShape> shape;
-    double best = 1e300;
+    double best = core::no_limit;
     for (const auto& [power, columns] : correction_forms(variables)) {
         auto trial = std::make_unique<CorrectionShape>(values, power, columns);
         if (3 * trial->columns() > y.size() && shape != nullptr) {

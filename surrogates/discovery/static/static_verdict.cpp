@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/no_limit.h"
 #include "core/parallel.h"
 #include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/report_findings.h"
@@ -15,6 +16,8 @@ namespace underbody::discovery {
 
 using dynamics::Channel;
 
+constexpr double trial_move = 0.1;  ///< of a typical value: the direction into which an effect moves the readings
+
 std::vector<DesignMatrix> StaticLoop::directions() const {
     std::vector<DesignMatrix> list;
     std::vector<double> moved;
@@ -24,8 +27,8 @@ std::vector<DesignMatrix> StaticLoop::directions() const {
         matrix.rows = train_.size();
         for (std::size_t j = 0; j < h.parameters.size(); ++j) {
             std::vector<double> p = h.start();
-            p[j] +=
-                (p[j] + 0.1 * h.parameters[j].typical <= h.parameters[j].upper ? 0.1 : -0.1) * h.parameters[j].typical;
+            const double move = trial_move * h.parameters[j].typical;
+            p[j] += p[j] + move <= h.parameters[j].upper ? move : -move;
             experiment_.residuals(train_, h.with(p), moved);
             ++matrix.columns;
             for (std::size_t k = 0; k < moved.size(); ++k) {
@@ -113,7 +116,7 @@ bool StaticLoop::earns_its_place(const FittedHypothesis& pair) const {
     const double gain = single.score() - pair.score();
     // beside a strong effect a second one is a small share and still real: then other set points must show it
     return gain > calibration_.pair_gain &&
-           (gain > calibration_.pair_share * std::max(pair.explained, 1e-12) || falls(&single, pair));
+           (gain > calibration_.pair_share * std::max(pair.explained, least_gain) || falls(&single, pair));
 }
 
 void StaticLoop::try_two() {
@@ -154,7 +157,7 @@ void StaticLoop::fit_pairs() {
     // two laws together bend to much: what they leave must look like noise, or nearly
     if (earns_its_place(found[best]) &&
         (rest.p > calibration_.unknown_p ||
-         structure_left(rest, found[best].explained) < 0.15 * calibration_.unknown_share)) {
+         structure_left(rest, found[best].explained) < calibration_.pair_rest_share * calibration_.unknown_share)) {
         fitted_.insert(fitted_.end(), found.begin(), found.end());
         rest_ = rest;
     }
@@ -190,7 +193,7 @@ std::vector<std::size_t> StaticLoop::quantities_to_correct() const {
             own[i] = experiment_.observations()[train_[i]].quantity == q ? own[i] : 0;
         }
         if (structure_->best(own).p <=
-            0.01) {  // in the others a correction would only carry their noise into the model
+            calibration_.correct_chance) {  // in the others a correction would only carry their noise into the model
             quantities.push_back(q);
         }
     }
@@ -248,7 +251,7 @@ bool StaticLoop::same_verdict(const std::vector<double>& weight) const {
         // the gate's chance follows the tail of what looked most like something, smooth or named
         const auto chance = [&](double gain, double drawn, double degrees) {
             const double whole = chi_squared_tail(gain, degrees);
-            return std::pair(whole, gate_ * chi_squared_tail(std::max(drawn, 0.0), degrees) / std::max(whole, 1e-300));
+            return std::pair(whole, gate_ * chi_squared_tail(std::max(drawn, 0.0), degrees) / core::never_zero(whole));
         };
         std::pair<double, double> strongest = chance(whole_.gain, of_rows(whole_.gain_of_row), whole_.degrees);
         if (best_single_ < fitted_.size()) {

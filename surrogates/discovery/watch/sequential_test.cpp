@@ -9,6 +9,9 @@ namespace underbody::discovery {
 
 namespace {
 
+constexpr double overshoot = 1.166;  ///< of the boundary by a sum of normal steps, both sides (Siegmund 1985)
+constexpr double least_tail = 1e-15;
+
 constexpr double first_steps = 8;
 constexpr double largest = 5;  ///< far below every threshold of use: a single wild step is no change that lasts
 
@@ -22,7 +25,7 @@ double normal_of_t(double t, double degrees) {
     const boost::math::students_t student(degrees);
     const double tail = boost::math::cdf(boost::math::complement(student, std::abs(t)));
     const double size =
-        tail > 1e-15 ? boost::math::quantile(boost::math::complement(boost::math::normal(), tail)) : largest;
+        tail > least_tail ? boost::math::quantile(boost::math::complement(boost::math::normal(), tail)) : largest;
     return std::copysign(size, t);
 }
 
@@ -41,7 +44,7 @@ double cusum_threshold(double reference, double mean_steps) {
         const double middle = 0.5 * (low + high);
         (steps(middle) < mean_steps ? low : high) = middle;
     }
-    return std::max(0.0, high - 1.166);
+    return std::max(0.0, high - overshoot);
 }
 
 double SelfStartingScore::normal(double score) {

@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "surrogates/discovery/watch/watch_scores.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
 
 namespace {
+
+constexpr double first_step = 1e-3;  ///< s, taken where there is no reading before
+constexpr double time_slack = 1e-6;  ///< of a step: the time of readings is rounded
 
 constexpr double least_block = 1;             ///< s
 constexpr double blocks_of_colour = 20;       ///< correlation times in a block: its neighbours do not know of it
@@ -53,7 +57,7 @@ struct Watch::Parts {
     std::shared_ptr<const dynamics::HeavePlant> plant_of_conditions() {
         std::vector<double> key(held.value.begin(), held.value.end());
         std::replace_if(
-            key.begin(), key.end(), [](double v) { return std::isnan(v); }, -1e300);
+            key.begin(), key.end(), [](double v) { return std::isnan(v); }, -core::no_limit);
         if (plants.size() > most_plants) {
             plants.clear();
         }
@@ -115,7 +119,7 @@ struct Watch::Parts {
             step.input = plant->held_input();
             return;
         }
-        from = std::min(from, step.time - 1e-3);  // the first step has none before it
+        from = std::min(from, step.time - first_step);  // the first step has none before it
         std::vector<double> out;
         const bool hold = model.records.input_between != dynamics::RecordReading::Between::linear;
         dynamics::Actuator{}.mean_over_steps(input_time, input_value, hold, {from, step.time}, out);
@@ -143,7 +147,7 @@ struct Watch::Parts {
             begin_anew();  // how long these rows took is not known
         }
         backwards = 0;
-        if (count_in_step > 0 && time - step_begin >= record_step * (1 - 1e-6)) {
+        if (count_in_step > 0 && time - step_begin >= record_step * (1 - time_slack)) {
             alarm = flush(time);
         }
         if (count_in_step == 0) {
@@ -236,7 +240,7 @@ struct Watch::Parts {
                 bridge_lost_inputs(steps.back().time, step);
                 fill(step);
             }
-            usual_step += usual_step == 0 ? dt : std::clamp(dt - usual_step, -0.01 * dt, 0.01 * usual_step);
+            follow_step(usual_step, dt);
         }
         find_input(steps.empty() ? step.time : steps.back().time, step);
         keep(step);
@@ -304,8 +308,8 @@ struct Watch::Parts {
                 velocity.push_back(step.velocity / step.velocity_share);
             }
         }
-        out.gap = own("gap", raw_time, raw_gap, 1e-4);
-        out.velocity = own("heave_velocity", velocity_time, velocity, 1e-3);
+        out.gap = own("gap", raw_time, raw_gap, dynamics::usual_gap_noise);
+        out.velocity = own("heave_velocity", velocity_time, velocity, dynamics::usual_velocity_noise);
         return out;
     }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogates/dynamics/simulate/sensor_noise.h"
+
 namespace underbody::discovery {
 
 namespace {
@@ -31,7 +33,7 @@ void WatchFilter::restart(double time, double gap) {
 
 /// Fourth order in time about the linearised equation.
 void WatchFilter::advance_part(double rest, double input) {
-    while (rest > 1e-9) {
+    while (rest > dynamics::same_instant) {
         double& h = state_[0];
         double& w = state_[1];
         dynamics::HeaveSlopes slopes;

@@ -3,11 +3,22 @@
 #include <cmath>
 #include <functional>
 
+#include "core/no_limit.h"
 #include "surrogates/discovery/watch/watch_residuals.h"
 
 namespace underbody::discovery {
 
 namespace {
+
+constexpr double least_process = 1e-14, first_process = 1e-11;  ///< m^2/s^3, of the search
+constexpr double grid_begin = 1e-10, grid_end = 2e-2;           ///< m^2/s^3, a decade a step
+constexpr double shortest_colour = 0.02, longest_colour = 20;   ///< s
+constexpr std::array<double, 3> colour_times{0.1, 0.4, 1.6};    ///< s, from which it begins
+constexpr double rough = 0.2, fine = 0.05;  ///< of a logarithm, last steps of the search: of one number, of three
+constexpr double no_gain = 1e-3;            ///< in -2 log likelihood
+constexpr double least_scale = 1e-12;
+constexpr double least_beyond_colour =
+    0.02;  ///< one less the sum of the coefficients: how long the noise remembers at most
 
 constexpr double widest = 2.5;             ///< robust deviations: what is further away counts as if it were there
 constexpr double least_correlation = 0.1;  ///< of neighbouring readings: with less the noise is called white
@@ -25,7 +36,7 @@ double robust_variance(const std::vector<double>& values) {
     }
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
-    const double scale = std::max(*middle / 0.6745, 1e-12), bound = widest * scale;
+    const double scale = std::max(*middle / median_of_normal, least_scale), bound = widest * scale;
     double sum = 0;
     for (const double size : sizes) {
         sum += std::min(size * size, bound * bound);
@@ -56,7 +67,7 @@ double cost_of(const WatchResiduals::Likelihood& likelihood) {
         cost +=
             likelihood.log_variances[s] + (count > 0 ? count * std::log(robust_variance(likelihood.normals[s])) : 0);
     }
-    return std::isfinite(cost) ? cost : 1e300;
+    return std::isfinite(cost) ? cost : core::no_limit;
 }
 
 /// Steps along each number by turns, halved where none helps (Hooke and Jeeves 1961).
@@ -69,7 +80,7 @@ void descend(const std::function<double(const std::vector<double>&)>& cost, std:
                 std::vector<double> trial = at;
                 trial[i] += change;
                 const double c = cost(trial);
-                if (c < best - 1e-3) {
+                if (c < best - no_gain) {
                     best = c;
                     at = trial;
                     moved = true;
@@ -122,12 +133,51 @@ WatchColour colour_of(std::vector<double> values) {
 }
 
 HeaveNoise noise_of(HeaveNoise noise, const std::vector<double>& logs) {
-    noise.process = std::exp(std::clamp(logs[0], std::log(1e-14), std::log(1.0)));
+    noise.process = std::exp(std::clamp(logs[0], std::log(least_process), std::log(1.0)));
     if (logs.size() > 1) {
         noise.slow = std::exp(logs[1]);
-        noise.slow_time = std::exp(std::clamp(logs[2], std::log(0.02), std::log(20.0)));
+        noise.slow_time = std::exp(std::clamp(logs[2], std::log(shortest_colour), std::log(longest_colour)));
     }
     return noise;
+}
+
+/// Process noise, size and time of a coloured noise, as logarithms: from several begins, for the likelihood has
+/// valleys.
+std::vector<double> coloured_noise(const std::function<double(const std::vector<double>&)>& cost, double white,
+                                   double gap_noise, double& best) {
+    std::vector<double> coloured;
+    best = core::no_limit;
+    for (const double q : {std::log(first_process), white}) {
+        for (const double time : colour_times) {
+            for (const double size : {1.0, 4.0}) {
+                const std::vector<double> trial{q, std::log(size * gap_noise), std::log(time)};
+                const double c = cost(trial);
+                if (c < best) {
+                    best = c;
+                    coloured = trial;
+                }
+            }
+        }
+    }
+    descend(cost, coloured, best, 1, fine);
+    return coloured;
+}
+
+/// How long the gap's noise remembers, s; `usual`: time between readings.
+double correlation_time(const WatchNoise& found, double usual) {
+    double time = found.correlation_time;
+    const double slow = found.noise.slow * found.noise.slow, all = slow + found.noise.gap * found.noise.gap;
+    if (slow * std::exp(-usual / found.noise.slow_time) > least_correlation * all) {
+        time = found.noise.slow_time;
+    }
+    if (!found.colours[0].white()) {
+        double sum = 0;
+        for (const double phi : found.colours[0].phi) {
+            sum += phi;
+        }
+        time = std::max(time, usual / std::max(1 - sum, least_beyond_colour));
+    }
+    return time;
 }
 
 }  // namespace
@@ -138,32 +188,18 @@ WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise&
     const auto cost = [&](const std::vector<double>& logs) {
         return cost_of(run_over(plant, steps, noise_of(plain, logs)));
     };
-    std::vector<double> white{std::log(1e-11)};
+    std::vector<double> white{std::log(first_process)};
     double white_cost = cost(white);
-    for (double q = 1e-10; q < 2e-2; q *= 10) {
+    for (double q = grid_begin; q < grid_end; q *= 10) {
         const double c = cost({std::log(q)});
         if (c < white_cost) {
             white_cost = c;
             white = {std::log(q)};
         }
     }
-    descend(cost, white, white_cost, 1, 0.2);
-    // coloured: from several begins, for the likelihood has valleys
-    std::vector<double> coloured;
-    double coloured_cost = 1e300;
-    for (const double q : {std::log(1e-11), white[0]}) {
-        for (const double time : {0.1, 0.4, 1.6}) {
-            for (const double size : {1.0, 4.0}) {
-                const std::vector<double> trial{q, std::log(size * begin.gap), std::log(time)};
-                const double c = cost(trial);
-                if (c < coloured_cost) {
-                    coloured_cost = c;
-                    coloured = trial;
-                }
-            }
-        }
-    }
-    descend(cost, coloured, coloured_cost, 1, 0.05);
+    descend(cost, white, white_cost, 1, rough);
+    double coloured_cost = 0;
+    const std::vector<double> coloured = coloured_noise(cost, white[0], begin.gap, coloured_cost);
     const bool has_colour = coloured_cost < white_cost - 2 * std::log(static_cast<double>(steps.size()));
     WatchNoise out;
     out.noise = noise_of(plain, has_colour ? coloured : white);
@@ -180,18 +216,8 @@ WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise&
     for (std::size_t s = 0; s < 2; ++s) {
         out.colours[s] = colour_of(likelihood.normals[s]);
     }
-    const double usual = (steps.back().time - steps.front().time) / static_cast<double>(steps.size() - 1);
-    const double slow = out.noise.slow * out.noise.slow, all = slow + out.noise.gap * out.noise.gap;
-    if (slow * std::exp(-usual / out.noise.slow_time) > least_correlation * all) {
-        out.correlation_time = out.noise.slow_time;
-    }
-    if (!out.colours[0].white()) {
-        double sum = 0;
-        for (const double phi : out.colours[0].phi) {
-            sum += phi;
-        }
-        out.correlation_time = std::max(out.correlation_time, usual / std::max(1 - sum, 0.02));
-    }
+    out.correlation_time =
+        correlation_time(out, (steps.back().time - steps.front().time) / static_cast<double>(steps.size() - 1));
     return out;
 }
 

@@ -7,6 +7,8 @@ namespace underbody::discovery {
 
 namespace {
 
+constexpr double median_step = 1.03;  ///< of the stochastic search of the median
+
 constexpr std::size_t settle_steps = 25;  ///< not judged at the begin and after a silence
 constexpr std::size_t first_steps = 3;    ///< after a begin: the reading it began with may have been wild
 constexpr std::size_t most_restarts = 3;
@@ -21,7 +23,6 @@ constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
 constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
 constexpr double limit = 3;              ///< of what one reading may say
 constexpr double uneven = 1.5;           ///< of the usual step: the colour's past is not known then
-constexpr double median_of_normal = 0.6745;
 
 }  // namespace
 
@@ -50,7 +51,7 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
         likelihood_->normals[index].push_back(innovation.normal);
         likelihood_->log_variances[index] += 2 * std::log(innovation.sigma);
         // a step of the stochastic search of the median
-        colour.scale *= std::abs(innovation.normal) > median_of_normal * colour.scale ? 1.03 : 1 / 1.03;
+        colour.scale *= std::abs(innovation.normal) > median_of_normal * colour.scale ? median_step : 1 / median_step;
     }
     if (wild) {
         used.slope = expected.slope;
@@ -117,7 +118,7 @@ std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep
         restart(step);
     } else {
         const double dt = step.time - *time_;
-        usual_step_ += usual_step_ == 0 ? dt : std::clamp(dt - usual_step_, -0.01 * dt, 0.01 * usual_step_);
+        follow_step(usual_step_, dt);
         if (dt > uneven * usual_step_) {
             for (Sensor& sensor : sensors_) {
                 sensor.past = {};

@@ -2,6 +2,7 @@
 // left out; and the noise that makes them so, learned from the vehicle.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -13,6 +14,15 @@
 #include "surrogates/discovery/watch/watch_filter.h"
 
 namespace underbody::discovery {
+
+/// Of the size of a standard normal number.
+inline constexpr double median_of_normal = 0.6745;
+
+/// The usual time between readings follows the last one, by a hundredth at most.
+inline void follow_step(double& usual, double dt) {
+    constexpr double most = 0.01;
+    usual += usual == 0 ? dt : std::clamp(dt - usual, -most * dt, most * usual);
+}
 
 /// One reading, judged.
 struct WatchResidual {

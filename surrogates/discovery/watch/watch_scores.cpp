@@ -7,6 +7,8 @@ namespace underbody::discovery {
 
 namespace {
 
+constexpr double block_slack = 1e-9;  ///< of a block: times are sums
+
 constexpr std::size_t most_blocks = 300;  ///< over which what shows is judged
 constexpr double alike = 6;  ///< of -2 log likelihood: directions that differ by less are not told apart (20 to 1)
 constexpr double least_filled = 0.5;     ///< share of a block's readings: with fewer it goes on
@@ -45,7 +47,8 @@ std::optional<WatchScores::Passed> WatchScores::take(double time,
         begin_ = time;
         return {};
     }
-    return time - *begin_ >= block_ * (1 - 1e-9) && count_ >= least_count_ ? end_block(time, judge) : std::nullopt;
+    return time - *begin_ >= block_ * (1 - block_slack) && count_ >= least_count_ ? end_block(time, judge)
+                                                                                  : std::nullopt;
 }
 
 std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judge) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
@@ -18,6 +19,10 @@
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double least_room = 1e-3;                    ///< m, between contact and escape
+constexpr double line_error = 1e-9, line_step = 1e-3;  ///< of the axes, a step; s, the first: of a boundary's line
+constexpr double grazing = 1e-12;                      ///< m, m/s, off the ground or the rim
 
 /// nullptr when the name is not an axis.
 const core::NamedRange* axis_of(const RegionOptions& options, const std::string& name) {
@@ -40,7 +45,7 @@ HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& opti
     const core::NamedRange* gap_axis = axis_of(options, "gap");
     const core::NamedRange* velocity_axis = axis_of(options, "heave_velocity");
     contact_gap = plant.terms.contact_gap;
-    double top = plant.terms.table_upper < 1e299 ? plant.terms.table_upper : contact_gap + 1;
+    double top = core::is_limit(plant.terms.table_upper) ? plant.terms.table_upper : contact_gap + 1;
     double highest = gap_axis ? gap_axis->upper : start_gaps ? contact_gap : options.held.get(Channel::gap, top);
     if (start_gaps) {
         for (const double gap : *start_gaps) {
@@ -48,7 +53,7 @@ HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& opti
         }
     }
     top = std::max(top, highest * (highest > 0 ? 1.0 : -1.0));
-    escape_gap = std::isnan(options.escape_gap) ? std::max(top, contact_gap + 1e-3) : options.escape_gap;
+    escape_gap = std::isnan(options.escape_gap) ? std::max(top, contact_gap + least_room) : options.escape_gap;
     if (escape_gap <= contact_gap) {
         throw core::InputError("range", "the escape gap " + core::format_number(escape_gap) +
                                             " m is not above the contact gap " + core::format_number(contact_gap) +
@@ -83,7 +88,8 @@ RegionBoundary backward(const HeaveRegionSetup& setup, const RegionOptions& o, b
     RegionBoundary line;
     line.name = name;
     const BackwardRate rate{&setup.plant, setup.plant.held_input()};
-    DormandPrince<2, BackwardRate> ode(rate, 0.0, {gap, velocity}, {1e-9 * gap_size, 1e-9 * velocity_size}, 1e-3);
+    DormandPrince<2, BackwardRate> ode(rate, 0.0, {gap, velocity}, {line_error * gap_size, line_error * velocity_size},
+                                       line_step);
     const auto add = [&](double h, double w) {
         line.x.push_back(gap_first ? h : w);
         line.y.push_back(gap_first ? w : h);
@@ -128,11 +134,11 @@ void add_boundaries(const HeaveRegionSetup& setup, const RegionOptions& o, bool 
     // do not.
     if (plant.static_force(setup.contact_gap) > 0) {
         region.boundaries.push_back(
-            backward(setup, o, gap_first, "grazes the ground", setup.contact_gap + 1e-12, -1e-12));
+            backward(setup, o, gap_first, "grazes the ground", setup.contact_gap + grazing, -grazing));
     }
     if (plant.static_force(setup.escape_gap) < 0) {
         region.boundaries.push_back(
-            backward(setup, o, gap_first, "grazes the upper end", setup.escape_gap - 1e-12, 1e-12));
+            backward(setup, o, gap_first, "grazes the upper end", setup.escape_gap - grazing, grazing));
     }
 }
 

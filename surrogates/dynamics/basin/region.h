@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/figure.h"
+#include "core/no_limit.h"
 #include "core/progress.h"
 #include "core/table.h"
 #include "core/units.h"
@@ -77,10 +78,10 @@ struct StabilityRegion {
     std::vector<RegionBoundary> boundaries;
     double duration = 0;
     double contact_gap = 0, escape_gap = 0;
-    double outside_fraction = 0;                       ///< share of starts outside the range of a force table
-    double path_outside_fraction = 0;                  ///< share of starts whose motion is outside it anywhere
-    double table_lower = 0, table_upper = 0;           ///< m, gaps that every force table covers
-    double pitch_lower = -1e300, pitch_upper = 1e300;  ///< rad, likewise
+    double outside_fraction = 0;              ///< share of starts outside the range of a force table
+    double path_outside_fraction = 0;         ///< share of starts whose motion is outside it anywhere
+    double table_lower = 0, table_upper = 0;  ///< m, gaps that every force table covers
+    double pitch_lower = -core::no_limit, pitch_upper = core::no_limit;  ///< rad, likewise
     std::string model;
     std::string rule;  ///< how the end of an attractor's starts was decided
     Conditions held;

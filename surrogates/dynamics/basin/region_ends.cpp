@@ -1,16 +1,33 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/dormand_prince.h"
 
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr std::array<double, 3> checked_at{0.15, 0.45, 0.75};  ///< of a stretch of the curve of static force
+constexpr double curve_error = 1e-11;                          ///< of the largest force
+constexpr double same_slope = 1e-7;                            ///< of two stretches that meet
+constexpr double least_stretch = 1e-12, knot_apart = 1e-10;    ///< of the range, of a stretch
+constexpr double rounding = 1e-15;
+constexpr double rest_gap = 1e-3;    ///< m, at which a resistance without speed is told from one by speed
+constexpr double speed_ratio = 1.3;  ///< between the speeds at which a resistance is asked whether it takes energy
+constexpr double near_ground = 1e-4, far_from_ground = 0.3;  ///< m; of the way to escape: the gaps for that
+constexpr double below_rim = 1e-12;    ///< of a well's depth: rounding never captures what would pass
+constexpr double last_quarter = 0.75;  ///< of the time, whose swing is compared with the one before
+constexpr double at_rest = 2e-3;       ///< swing over a well's width: less is rest
+constexpr double shrinking = 0.9;      ///< ratio of the two swings: less goes to rest
+constexpr double steady_swing = 0.05;  ///< change of the swing: less is a cycle
 
 /// Everything that acts on the body at rest, against the gap, as one curve over [lower, upper].
 Curve static_curve(const HeavePlant& plant, double lower, double upper) {
@@ -28,7 +45,7 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
     knots.erase(std::unique(knots.begin(), knots.end(), [hair](double l, double r) { return r - l <= hair; }),
                 knots.end());
     const double size = [&] {
-        double largest = 1e-300;
+        double largest = core::least_divisor;
         for (const double h : knots) {
             largest = std::max(largest, std::abs(plant.static_force(h)));
         }
@@ -45,25 +62,25 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
         const double sl = end_slope(l, r), sr = end_slope(r, l), width = r - l;
         const double vl = f(l), vr = f(r);
         double worst = 0;
-        for (const double t : {0.15, 0.45, 0.75}) {
+        for (const double t : checked_at) {
             const double q = 1 - t;
             const double hermite =
                 vl * q * q * (1 + 2 * t) + vr * t * t * (3 - 2 * t) + width * t * q * (sl * q - sr * t);
             worst = std::max(worst, std::abs(hermite - f(l + t * width)));
         }
-        if (worst > 1e-11 * size && depth < 8) {
+        if (worst > curve_error * size && depth < 8) {
             self(self, l, (l + r) / 2, depth + 1);
             self(self, (l + r) / 2, r, depth + 1);
             return;
         }
         // Two knots a hair apart where the slopes of two pieces differ: each piece keeps its own.
-        if (!x.empty() && std::abs(slope.back() - sl) <= 1e-7 * (std::abs(sl) + size / (upper - lower))) {
+        if (!x.empty() && std::abs(slope.back() - sl) <= same_slope * (std::abs(sl) + size / (upper - lower))) {
             x.pop_back();
             value.pop_back();
             slope.pop_back();
             x.push_back(l);
         } else if (!x.empty()) {
-            x.push_back(l + std::max(1e-10 * width, 1e-15 * std::abs(l)));
+            x.push_back(l + std::max(knot_apart * width, rounding * std::abs(l)));
         } else {
             x.push_back(l);
         }
@@ -74,7 +91,7 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
         slope.push_back(sr);
     };
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        if (knots[i + 1] - knots[i] > 1e-12 * (upper - lower)) {
+        if (knots[i + 1] - knots[i] > least_stretch * (upper - lower)) {
             refine(refine, knots[i], knots[i + 1], 0);
         }
     }
@@ -132,7 +149,7 @@ struct HeaveEnds::Impl {
         equilibria = heave_equilibria(plant);
         const double margin = 0.02 * (escape - contact);
         force = static_curve(plant, contact - margin, escape + margin);
-        rest_resistance = plant.resistance(std::max(contact, 1e-3), 0.0);
+        rest_resistance = plant.resistance(std::max(contact, rest_gap), 0.0);
         judge_dissipation();
         name_classes();
     }
@@ -145,16 +162,16 @@ struct HeaveEnds::Impl {
         }
         energy = plant.autonomous() && depends_on_both && plant.single_curve() && !plant.loop;
         double most = 0;
-        for (double size = 1e-6; size < 1e3 && energy; size *= 1.3) {
+        for (double size = 1e-6; size < 1e3 && energy; size *= speed_ratio) {
             for (const double w : {size, -size}) {
-                for (const double h : {contact + 1e-4, contact + 0.3 * (escape - contact)}) {
+                for (const double h : {contact + near_ground, contact + far_from_ground * (escape - contact)}) {
                     const double loss = (plant.resistance(h, w) - rest_resistance) * w;
-                    energy = energy && loss >= -1e-15 * w * w;
+                    energy = energy && loss >= -rounding * w * w;
                     most = std::max(most, loss / (w * w));
                 }
             }
         }
-        lossless = energy && most <= 1e-15;
+        lossless = energy && most <= rounding;
         rule = !energy ? "settled" : lossless ? "energy without loss" : "energy";
     }
 
@@ -192,7 +209,7 @@ struct HeaveEnds::Impl {
             // A hair below the rim, so that rounding never captures what would pass.
             const double bottom = potential(classes[i].gap);
             const double rim = std::min(potential(well.lower), potential(well.upper));
-            well.rim = rim - 1e-12 * std::abs(rim - bottom);
+            well.rim = rim - below_rim * std::abs(rim - bottom);
             wells.push_back(well);
         }
     }
@@ -303,7 +320,7 @@ struct HeaveEnds::Impl {
 
     /// The extent of the motion over a part of the time.
     struct Extent {
-        double low = 1e300, high = -1e300;
+        double low = core::no_limit, high = -core::no_limit;
         void take(double h) {
             low = std::min(low, h);
             high = std::max(high, h);
@@ -320,8 +337,8 @@ struct HeaveEnds::Impl {
             // A force that changes the velocity so much within a second.
             scale[2] = actuator ? scale_velocity * plant.terms.mass : scale[2];
         }
-        const double look_back = actuator && actuator->delayed() ? actuator->max_step() : 1e300;
-        DormandPrince<N, Rate> ode(rate, 0.0, start, scale, 0.02);
+        const double look_back = actuator && actuator->delayed() ? actuator->max_step() : core::no_limit;
+        DormandPrince<N, Rate> ode(rate, 0.0, start, scale, first_motion_step);
         Extent third, fourth;
         End held{-1, 0, outside(start[0])};  // once it can no longer leave a well, it may still leave the tables
         if (energy) {
@@ -351,7 +368,7 @@ struct HeaveEnds::Impl {
                     return held;
                 }
             } else if (ode.t() > 0.5 * duration) {
-                (ode.t() > 0.75 * duration ? fourth : third).take(h);
+                (ode.t() > last_quarter * duration ? fourth : third).take(h);
             }
         }
         if (held.index >= 0) {
@@ -406,13 +423,13 @@ struct HeaveEnds::Impl {
                 continue;
             }
             const double width = well.upper - well.lower;
-            if (fourth.size() < 2e-3 * width) {
+            if (fourth.size() < at_rest * width) {
                 return {well.class_index, duration};
             }
-            if (fourth.size() < 0.9 * third.size()) {
+            if (fourth.size() < shrinking * third.size()) {
                 return {well.class_index, duration};  // shrinking toward it
             }
-            if (std::abs(fourth.size() - third.size()) < 0.05 * third.size()) {
+            if (std::abs(fourth.size() - third.size()) < steady_swing * third.size()) {
                 return {static_cast<int>(static_cast<std::size_t>(well.class_index) + 2 + wells.size()), duration};
             }
         }

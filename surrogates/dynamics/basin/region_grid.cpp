@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/plant/environment.h"
@@ -11,6 +12,9 @@
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double same_place = 1e-9;   ///< of an axis
+constexpr double all_inside = 1e-12;  ///< share of the map
 
 [[noreturn]] void refuse(const std::string& why) {
     throw core::InputError("range", why, {}, "for instance option 'axes gap=0:0.5,heave_velocity=-0.1:0.1'");
@@ -45,7 +49,7 @@ void check_region_options(const RegionOptions& options) {
 
 void check_gap_axis(const RegionOptions& options, double contact_gap) {
     for (const core::NamedRange& axis : options.axes) {
-        if (axis.name == "gap" && axis.lower < contact_gap - 1e-9 * (axis.upper - axis.lower)) {
+        if (axis.name == "gap" && axis.lower < contact_gap - same_place * (axis.upper - axis.lower)) {
             throw core::InputError("range",
                                    "the axis of gaps begins at " + core::format_number(1e3 * axis.lower, 6) +
                                        " mm, in the ground: the body touches it at " +
@@ -307,7 +311,7 @@ double outside_share(const StabilityRegion& region) {
         const double covered = std::min(axis.upper, upper) - std::max(axis.lower, lower);
         inside *= std::clamp(covered / (axis.upper - axis.lower), 0.0, 1.0);
     }
-    return inside > 1 - 1e-12 ? 0 : 1 - inside;
+    return inside > 1 - all_inside ? 0 : 1 - inside;
 }
 
 void add_outside_remarks(StabilityRegion& region) {
@@ -326,7 +330,7 @@ void add_outside_remarks(StabilityRegion& region) {
 std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower, double pitch_upper) {
     std::string range;
     const auto add = [&](const char* name, double lower, double upper, double scale, const char* unit) {
-        if (lower > -1e299 || upper < 1e299) {
+        if (core::is_limit(lower) || core::is_limit(upper)) {
             range += std::string(range.empty() ? "" : "; ") + name + " " + core::format_number(scale * lower, 6) +
                      " to " + core::format_number(scale * upper, 6) + unit;
         }

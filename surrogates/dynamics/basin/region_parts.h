@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/no_limit.h"
 #include "surrogates/dynamics/basin/region.h"
 
 namespace underbody::dynamics {
+
+constexpr double first_motion_step = 0.02;  ///< s, of motions followed to their ends
 
 /// A plant with its bounds and its judge of ends.
 struct HeaveRegionSetup {
@@ -41,14 +44,18 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& options
 /// Share of the map's area where a force table is asked beyond its range.
 double outside_share(const StabilityRegion& region);
 /// The range of the force tables along the states that are axes of tables: "gap 0 to 0.1 m; pitch -4 to 4 deg".
-std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower = -1e300,
-                             double pitch_upper = 1e300);
+std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower = -core::no_limit,
+                             double pitch_upper = core::no_limit);
 /// Warning that a share of motions leaves the tables' range; nothing when none does.
 void add_path_remark(core::Problems& remarks, double share, const std::string& range);
 /// Warnings that starts, and motions, are beyond the force tables; from the region's fractions and ranges.
 void add_outside_remarks(StabilityRegion& region);
 /// Those of a motion, and how much of the map's starts and motions lies beyond a force table.
 void add_model_remarks(StabilityRegion& region, const Model& model, const Conditions& held);
+
+/// Of as many maps as `map.draws`, whose safe starts it holds the sum of: means; the area's from the sum of their safe
+/// shares and of these shares' squares.
+void take_mean(ProbabilityMap& map, double sum, double squares);
 
 /// True when the motion asked for is that of heave and pitch together.
 bool in_heave_and_pitch(const RegionOptions& options, const core::Table* starts = nullptr);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region_parts.h"
@@ -45,7 +46,7 @@ struct PitchSetup {
     PitchState middle{}, sizes{};
     double escape = 0;
 
-    PitchSetup(const Model& model, const RegionOptions& options, double highest_start = -1e300)
+    PitchSetup(const Model& model, const RegionOptions& options, double highest_start = -core::no_limit)
         : plant(model, options.held) {
         if (options.pitch_feedback) {
             plant.close_loop(*options.pitch_feedback);
@@ -56,10 +57,11 @@ struct PitchSetup {
             heave.force_limit = options.feedback->limit;
             plant.close_loop(heave);
         }
-        const double top = plant.table_upper() < 1e299 ? plant.table_upper() : 1.0;
+        const double top = core::is_limit(plant.table_upper()) ? plant.table_upper() : 1.0;
         middle = {options.held.get(Channel::gap, 0.5 * top), options.held.get(Channel::heave_velocity, 0),
                   options.held.get(Channel::pitch, 0), options.held.get(Channel::pitch_rate, 0)};
-        sizes = {top - plant.contact_gap(), 0.1, 0.2, 0.2};
+        constexpr double usual_speed = 0.1, usual_pitch = 0.2, usual_rate = 0.2;  // m/s, rad, rad/s: no axes of the map
+        sizes = {top - plant.contact_gap(), usual_speed, usual_pitch, usual_rate};
         double highest = std::max(middle[0], highest_start);
         for (const core::NamedRange& axis : options.axes) {
             sizes[state_of(axis.name)] = axis.upper - axis.lower;
@@ -128,7 +130,7 @@ FoundEnds pitch_ends_of_starts(const Model& model, const core::Table& starts, co
     const char* names[] = {"gap", "heave_velocity", "pitch", "pitch_rate"};
     const std::vector<double>& gap = starts.numbers("gap");
     const RegionOptions& each = options;
-    const PitchSetup setup(model, each, gap.empty() ? -1e300 : *std::max_element(gap.begin(), gap.end()));
+    const PitchSetup setup(model, each, gap.empty() ? -core::no_limit : *std::max_element(gap.begin(), gap.end()));
     std::vector<PitchState> states(starts.rows(), setup.middle);
     for (std::size_t k = 0; k < 4; ++k) {
         if (!starts.find(names[k])) {

@@ -3,12 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/random.h"
+#include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 #include "surrogates/dynamics/simulate/dormand_prince.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"
 
 namespace underbody::dynamics {
+
+namespace {
+
+constexpr double settling = 1e-4;  ///< 1/s, of the slowest mode: slower ones get no set of their own
+constexpr double first_radius = 1e-6, radius_ratio = 1.15,
+                 radius_margin = 1.3;               ///< of that set; shells are checked at points only
+constexpr double resting_speed = 1e-6;              ///< m/s, rad/s, on the ground
+constexpr double at_rest = 2e-3;                    ///< swing in units of the sizes: less is rest
+constexpr double shrinking = 0.97, growing = 1.03;  ///< ratio of the last two swings: to rest, a cycle, neither
+constexpr double quarter = 0.25;                    ///< of a step between looks for contact; of the time for a swing
+constexpr double chattering = 1e-3;                 ///< of the size of speeds, after thousands of contacts
+
+}  // namespace
 
 void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
     Capture capture;
@@ -17,12 +32,12 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
     capture.pitch = e.pitch;
     classes_.push_back({e.name, EndKind::attractor, e.gap, 0});
     const LinearSystem system = plant_.linearised(e.gap, e.pitch);
-    double worst = -1e300;
+    double worst = -core::no_limit;
     for (const EigenPair& mode : eigen(system.a)) {
         worst = std::max(worst, mode.value.real());
     }
     const HeaveTerms& terms = plant_.vertical().terms;
-    if (worst < -1e-4 && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
+    if (worst < -settling && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
         Matrix weights(4, 4);
         for (std::size_t i = 0; i < 4; ++i) {
             weights(i, i) = 1 / (sizes_[i] * sizes_[i]);
@@ -63,12 +78,12 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
                 return growth < 0;
             });
         };
-        double radius = 1e-6;
+        double radius = first_radius;
         while (radius < 1e6 && falls(radius)) {
-            radius *= 1.15;
+            radius *= radius_ratio;
         }
-        radius /= 1.15 * 1.3;  // a margin, since shells are checked at points only
-        capture.holds = radius > 2e-6;
+        radius /= radius_ratio * radius_margin;  // a margin, since shells are checked at points only
+        capture.holds = radius > 2 * first_radius;
         capture.level = radius * radius;
         const Matrix reach = inverse(capture.p);
         capture.gap_reach = std::sqrt(reach(0, 0));
@@ -78,7 +93,7 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
 }
 
 bool PitchEnds::rests(const PitchState& y, ContactState bearing) const {
-    if (bearing != ContactState::flat || std::abs(y[1]) > 1e-6 || std::abs(y[3]) > 1e-6) {
+    if (bearing != ContactState::flat || std::abs(y[1]) > resting_speed || std::abs(y[3]) > resting_speed) {
         return false;
     }
     const std::array<double, 2> normal = plant_.normal_forces(y, bearing);
@@ -86,7 +101,7 @@ bool PitchEnds::rests(const PitchState& y, ContactState bearing) const {
 }
 
 End PitchEnds::settled(const Extent& third, const Extent& fourth) const {
-    double nearest = 1e300;
+    double nearest = core::no_limit;
     std::size_t at = attractors_;
     double before = 0, after = 0;
     for (std::size_t k = 0; k < captures_.size(); ++k) {
@@ -106,10 +121,10 @@ End PitchEnds::settled(const Extent& third, const Extent& fourth) const {
         }
     }
     if (at < attractors_ && after < 0.5) {
-        if (after < 2e-3 || after < 0.97 * before) {
+        if (after < at_rest || after < shrinking * before) {
             return {static_cast<int>(at), options_.duration};
         }
-        if (after < 1.03 * before) {
+        if (after < growing * before) {
             return {static_cast<int>(attractors_ + 2 + at), options_.duration};
         }
     }
@@ -154,6 +169,26 @@ bool PitchEnds::leaves_tables(const Integrator& ode) const {
     return outside(ode.y()[0], ode.y()[2]) || outside(farthest(0), ode.y()[2]) || outside(ode.y()[0], farthest(2));
 }
 
+namespace {
+
+/// The earliest part of a step, of four, in which `value` falls below zero, and where in it; negative when it does not.
+template <class Value>
+double first_negative(const Value& value) {
+    for (double part = quarter; part <= 1; part += quarter) {
+        if (value(part) < 0) {
+            double lo = part - quarter, hi = part;
+            for (int i = 0; i < 40; ++i) {
+                const double middle = (lo + hi) / 2;
+                (value(middle) < 0 ? hi : lo) = middle;
+            }
+            return hi;
+        }
+    }
+    return -1;
+}
+
+}  // namespace
+
 template <bool Memory, bool Loop>
 End PitchEnds::go(const PitchState& start) const {
     using Law = Rate<Memory, Loop>;
@@ -179,7 +214,7 @@ End PitchEnds::go(const PitchState& start) const {
         Law{&plant_, &actuator, ContactState::free}(0, y.data(), begin.data());
         actuator.accept(0, y.data(), begin.data());
     }
-    const double look_back = Loop && actuator.delayed() ? actuator.max_step() : 1e300;
+    const double look_back = Loop && actuator.delayed() ? actuator.max_step() : core::no_limit;
     ContactState bearing = ContactState::free;
     double t = 0;
     Extent third, fourth;
@@ -188,7 +223,7 @@ End PitchEnds::go(const PitchState& start) const {
     const auto ends = [&](int index, double when) { return held.index >= 0 ? held : End{index, when, held.outside}; };
     while (t < options_.duration) {
         const Law rate{&plant_, &actuator, bearing};
-        DormandPrince<N, Law> ode(rate, t, y, scale, 0.02);
+        DormandPrince<N, Law> ode(rate, t, y, scale, first_motion_step);
         bool changed = false;
         while (!changed && t < options_.duration) {
             if (!ode.step(std::min(options_.duration, ode.t() + look_back)) || ode.tries() > 400000) {
@@ -211,26 +246,15 @@ End PitchEnds::go(const PitchState& start) const {
                 const State at = part == 1.0 ? y : between(part);
                 return margin(motion(at), bearing, rate.around(before + part * width, at.data()));
             };
-            // The earliest event within the step: a gap that closes or a bearing force that vanishes.
-            double hit = -1;
-            for (const double part : {0.25, 0.5, 0.75, 1.0}) {
-                if (value(part) < 0) {
-                    hit = part;
-                    break;
-                }
-            }
+            // A gap that closes or a bearing force that vanishes.
+            const double hit = first_negative(value);
             if (hit > 0) {
-                double lo = hit - 0.25, hi = hit;
-                for (int i = 0; i < 40; ++i) {
-                    const double middle = (lo + hi) / 2;
-                    (value(middle) < 0 ? hi : lo) = middle;
-                }
-                t = before + hi * width;
-                held.outside = held.outside || outside(between(hi)[0], between(hi)[2]);
+                t = before + hit * width;
+                held.outside = held.outside || outside(between(hit)[0], between(hit)[2]);
                 if (!options_.through_contact) {
                     return ends(contact_class(), t);
                 }
-                y = between(hi);
+                y = between(hit);
                 PitchState landed = motion(y);
                 try {
                     land(plant_, landed, bearing, rate.around(t, y.data()));
@@ -242,7 +266,7 @@ End PitchEnds::go(const PitchState& start) const {
                     return ends(contact_class(), t);
                 }
                 if (++changes > 2000) {
-                    return ends(std::abs(y[1]) < 1e-3 * sizes_[1] ? contact_class() : undecided_class(), t);
+                    return ends(std::abs(y[1]) < chattering * sizes_[1] ? contact_class() : undecided_class(), t);
                 }
                 changed = true;
             } else {  // beyond the escape gap the step went on, the motion did not
@@ -264,7 +288,7 @@ End PitchEnds::go(const PitchState& start) const {
                 return ends(contact_class(), t);
             }
             if (t > 0.5 * options_.duration) {
-                (t > 0.75 * options_.duration ? fourth : third).take(motion(y));
+                (t > (1 - quarter) * options_.duration ? fourth : third).take(motion(y));
             }
         }
     }

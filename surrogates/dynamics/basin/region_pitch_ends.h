@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/no_limit.h"
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
@@ -113,7 +114,8 @@ private:
 
     /// Swing about an attractor in units of the sizes, over a part of the time.
     struct Extent {
-        PitchState low{1e300, 1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300, -1e300};
+        static constexpr double none = core::no_limit;
+        PitchState low{none, none, none, none}, high{-none, -none, -none, -none};
         void take(const PitchState& y) {
             for (std::size_t i = 0; i < 4; ++i) {
                 low[i] = std::min(low[i], y[i]);

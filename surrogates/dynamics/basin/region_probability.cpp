@@ -8,6 +8,17 @@
 
 namespace underbody::dynamics {
 
+void take_mean(ProbabilityMap& map, double sum, double squares) {
+    const auto count = static_cast<double>(map.draws);
+    for (float& value : map.safe) {
+        value /= static_cast<float>(map.draws);
+    }
+    map.area_mean = sum / count;
+    map.area_sigma =
+        map.draws > 1 ? std::sqrt(std::max(0.0, squares / count - map.area_mean * map.area_mean) * count / (count - 1))
+                      : 0.0;
+}
+
 ProbabilityMap probability_map(const Model& model, const RegionOptions& options, std::size_t draws, std::uint64_t seed,
                                core::Progress& progress) {
     if (draws < 1) {
@@ -42,14 +53,7 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
         sum += share;
         squares += share * share;
     }
-    const auto count = static_cast<double>(draws);
-    for (float& value : map.safe) {
-        value /= static_cast<float>(draws);
-    }
-    map.area_mean = sum / count;
-    map.area_sigma =
-        draws > 1 ? std::sqrt(std::max(0.0, squares / count - map.area_mean * map.area_mean) * count / (count - 1))
-                  : 0.0;
+    take_mean(map, sum, squares);
     add_path_remark(map.remarks, map.path_outside_fraction, range);
     if (map.area_sigma == 0) {
         map.remarks.push_back(

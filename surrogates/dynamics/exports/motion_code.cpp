@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/force_sources.h"
@@ -15,12 +16,15 @@ namespace underbody::dynamics {
 
 namespace {
 
+constexpr double body_step = 0.1;                           ///< s, at most
+constexpr double nominal_body = 0.1, nominal_heave = 0.01;  ///< size of the states
+
 std::string number(double value) {
     if (std::isnan(value)) {
         return "NAN";
     }
     if (std::isinf(value)) {
-        return value > 0 ? "1e300" : "-1e300";
+        return value > 0 ? "1e300" : "-1e300";  // core::no_limit
     }
     const std::string text = core::format_number(value);
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
@@ -102,7 +106,7 @@ private:
         define("JETS", count(jets()));
         define("DELAY", number(terms.actuator.delay));
         define("DELAYED", terms.actuator.delay > 0 ? "1" : "0");
-        double longest = of_.motion == FmuMotion::body ? 0.1 : 0;
+        double longest = of_.motion == FmuMotion::body ? body_step : 0;
         for (const HeaveTerms::Wave& wave : terms.waves) {
             const double part = 0.1 / std::max(wave.frequency, 1e-9);
             longest = longest > 0 ? std::min(longest, part) : part;
@@ -365,8 +369,10 @@ private:
                 ";\nstatic const double start_inputs[] = " + listed(inputs) +
                 ";\nstatic const int channel_of_input[] = {" + channels +
                 "};\nstatic const double held_channels[] = " + listed(of_.held.value) + ";\n";
-        out_ += "static const double nominal_states[] = " +
-                listed(std::vector<double>(starts.size(), of_.motion == FmuMotion::body ? 0.1 : 0.01)) + ";\n";
+        out_ +=
+            "static const double nominal_states[] = " +
+            listed(std::vector<double>(starts.size(), of_.motion == FmuMotion::body ? nominal_body : nominal_heave)) +
+            ";\n";
         ranges();
         jet_list();
         if (of_.motion != FmuMotion::heave) {
@@ -379,7 +385,7 @@ private:
         std::size_t many = 0;
         for (std::size_t c = 0; c < channel_count; ++c) {
             const auto channel = static_cast<Channel>(c);
-            double lower = -1e300, upper = 1e300;
+            double lower = -core::no_limit, upper = core::no_limit;
             for (const ForceSource& source : of_.model.forces) {
                 for (std::size_t k = 0; k < source.axes.size(); ++k) {
                     const bool seen = of_.motion != FmuMotion::heave || source.quantity == "lift_force";
@@ -389,7 +395,7 @@ private:
                     }
                 }
             }
-            if (lower > -1e299 || upper < 1e299) {
+            if (core::is_limit(lower) || core::is_limit(upper)) {
                 const bool size = of_.motion == FmuMotion::body && channel == Channel::speed;
                 list +=
                     "{" + count(c) + ", " + (size ? "1" : "0") + ", " + number(lower) + ", " + number(upper) + "}, ";

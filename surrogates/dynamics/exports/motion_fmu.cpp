@@ -13,6 +13,7 @@
 #include "surrogates/dynamics/plant/pitch_effects.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
+#include "surrogates/dynamics/simulate/trajectory_parts.h"
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/exports/fmu_package.h"
 
@@ -211,7 +212,7 @@ void check(const MotionSource& of, const std::vector<double>& start) {
             std::copy_n(start.begin(), y.size(), y.begin());
             gaps = RigidBody(of.model, of.held, of.varying).edge_gaps(y);
         }
-        if (std::min(gaps[0], gaps[1]) < -1e-9) {
+        if (std::min(gaps[0], gaps[1]) < -start_depth) {
             refuse_start(of.model, std::min(gaps[0], gaps[1]));
         }
     }

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "surrogates/dynamics/model/force_error.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
 
 namespace underbody::dynamics {
 
@@ -65,7 +66,7 @@ TrimError spread_of(std::size_t draws, const std::vector<Mode>& own, const std::
             ++known;
             like += one.modes.size() == own.size() ? 1U : 0U;
             stable += std::all_of(one.modes.begin(), one.modes.end(),
-                                  [](const Mode& mode) { return mode.value.real() < 1e-6; })
+                                  [](const Mode& mode) { return mode.value.real() < no_growth; })
                           ? 1U
                           : 0U;
         }
@@ -97,20 +98,11 @@ double heave_force_error(const Model& model, const Conditions& held, double gap,
     double sum = std::pow(error_of(model, "lift_force")(at_rest(model, held, gap, pitch)), 2);
     for (std::size_t e = 0; e < model.effects.size(); ++e) {
         const EffectUse& use = model.effects[e];
-        const std::vector<EffectParameter>& parameters = effect(use.name).info().parameters;
         for (std::size_t p = 0; p < use.values.size() && past_the_tables(use); ++p) {
-            if (!(use.sigmas[p] > 0)) {
-                continue;
-            }
-            Model above = model, below = model;
-            double& high = above.effects[e].values[p];
-            double& low = below.effects[e].values[p];
-            high = std::min(high + use.sigmas[p], parameters[p].upper);
-            low = std::max(low - use.sigmas[p], parameters[p].lower);
-            if (high > low) {
-                const double change =
-                    HeavePlant(above, held).static_force(gap) - HeavePlant(below, held).static_force(gap);
-                sum += std::pow(change / (high - low) * use.sigmas[p], 2);
+            if (const auto beside = models_beside(model, e, p)) {
+                const double change = HeavePlant(beside->above, held).static_force(gap) -
+                                      HeavePlant(beside->below, held).static_force(gap);
+                sum += std::pow(change / beside->apart * use.sigmas[p], 2);
             }
         }
     }

@@ -22,7 +22,10 @@ Number number_at(std::string_view bytes, std::size_t at) {
 }
 
 /// The whole part of a number that may be anything in a damaged log; 0 for what no 64-bit integer holds.
-inline std::int64_t whole_part(double value) { return std::abs(value) < 9.2e18 ? static_cast<std::int64_t>(value) : 0; }
+inline std::int64_t whole_part(double value) {
+    constexpr double most = 9.2e18;
+    return std::abs(value) < most ? static_cast<std::int64_t>(value) : 0;
+}
 
 /// Seconds from `start` to `time` (ns), exact to a nanosecond where 64 bits hold the difference; two times of a damaged
 /// log may lie further apart.

@@ -7,6 +7,7 @@
 #include "core/counted.h"
 #include "core/file.h"
 #include "core/heading.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -85,7 +86,7 @@ double usual_step(const std::vector<double>& time) {
 /// The times of the rows: every reading of gap and velocity, every change of a held input.
 std::vector<double> row_times(const LogChannels& channels, const std::vector<ChannelReadings>& readings) {
     std::vector<double> times;
-    double step = 0, first = -1e300, last = 1e300;
+    double step = 0, first = -core::no_limit, last = core::no_limit;
     for (std::size_t c = 0; c < readings.size(); ++c) {
         const std::string& quantity = channels.channels[c].quantity;
         if (makes_rows(quantity)) {
@@ -106,9 +107,10 @@ std::vector<double> row_times(const LogChannels& channels, const std::vector<Cha
         }
     }
     std::sort(times.begin(), times.end());
+    constexpr double same_row = 0.01;  // of the step
     std::vector<double> rows;
     for (const double t : times) {
-        if (rows.empty() || t - rows.back() > 0.01 * step) {
+        if (rows.empty() || t - rows.back() > same_row * step) {
             rows.push_back(t);
         }
     }

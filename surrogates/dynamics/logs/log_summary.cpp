@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/no_limit.h"
+
 namespace underbody::dynamics {
 
 namespace {
@@ -92,7 +94,7 @@ LogSummary summarise_log(const std::filesystem::path& log, core::Progress& progr
     summary.file = log.string();
     summary.end = read_log(log, sink, progress);
     summary.series = sink.finished();
-    double first = 1e300, last = -1e300;
+    double first = core::no_limit, last = -core::no_limit;
     for (const LogSeriesSummary& one : summary.series) {
         first = one.count > 0 ? std::min(first, one.first) : first;
         last = one.count > 0 ? std::max(last, one.last) : last;

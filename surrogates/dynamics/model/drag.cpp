@@ -19,7 +19,9 @@ MixedDrag::MixedDrag(double linear_in, double quadratic_in, double length, doubl
     c[3] = 10 * rise - width * (6 * d0 + 4 * d1) - width * width * (3 * e0 - e1) / 2;
     c[4] = -15 * rise + width * (8 * d0 + 7 * d1) + width * width * (3 * e0 - 2 * e1) / 2;
     c[5] = 6 * rise - 3 * width * (d0 + d1) - width * width * (e0 - e1) / 2;
-    monotone = !(quadratic > 0) || linear / (quadratic * w2) <= 2.382;
+    // of the two laws at w2, up to which the quintic between them does not fall
+    constexpr double monotone_ratio = 2.382;
+    monotone = !(quadratic > 0) || linear / (quadratic * w2) <= monotone_ratio;
 }
 
 double MixedDrag::operator()(double w) const {

@@ -30,10 +30,11 @@ double sigma_at(const tables::ForceTable& table, const std::vector<Channel>& axe
 
 /// Anywhere on or beyond its grid.
 bool states_error(const tables::ForceTable& table) {
+    constexpr double off_grid = 0.4567;  // of an axis: on no grid line
     double middle[tables::max_axes], beyond[tables::max_axes];
     for (std::size_t k = 0; k < table.axes().size(); ++k) {
         const auto& axis = table.axes()[k];
-        middle[k] = axis.lower + 0.4567 * (axis.upper - axis.lower);
+        middle[k] = axis.lower + off_grid * (axis.upper - axis.lower);
         beyond[k] = axis.upper + (axis.upper - axis.lower);
     }
     return table.sigma(middle) > 0 || table.sigma(beyond) > 0;
@@ -68,19 +69,26 @@ ForceError::ForceError(const Model& model, const std::string& quantity)
         for (std::size_t p = 0; p < parameters.size(); ++p) {
             const bool of_a_force =
                 use.parameter.empty() || use.parameter.starts_with("force.") || use.parameter.starts_with("coupling.");
-            if (!(use.sigmas[p] > 0) || !of_a_force) {
-                continue;
-            }
-            Model above = model, below = model;
-            double& high = above.effects[e].values[p];
-            double& low = below.effects[e].values[p];
-            high = std::min(high + use.sigmas[p], parameters[p].upper);
-            low = std::max(low - use.sigmas[p], parameters[p].lower);
-            if (high > low) {
-                parameters_.push_back({{above, quantity}, {below, quantity}, (high - low) / (2 * use.sigmas[p])});
+            if (const auto beside = of_a_force ? models_beside(model, e, p) : std::nullopt) {
+                parameters_.push_back(
+                    {{beside->above, quantity}, {beside->below, quantity}, beside->apart / (2 * use.sigmas[p])});
             }
         }
     }
+}
+
+std::optional<ModelsBeside> models_beside(const Model& model, std::size_t effect, std::size_t parameter) {
+    const EffectUse& use = model.effects[effect];
+    const EffectParameter& bounds = dynamics::effect(use.name).info().parameters[parameter];
+    const double sigma = use.sigmas[parameter], value = use.values[parameter];
+    const double high = std::min(value + sigma, bounds.upper), low = std::max(value - sigma, bounds.lower);
+    if (!(sigma > 0) || !(high > low)) {
+        return {};
+    }
+    ModelsBeside beside{model, model, high - low};
+    beside.above.effects[effect].values[parameter] = high;
+    beside.below.effects[effect].values[parameter] = low;
+    return beside;
 }
 
 double ForceError::operator()(const Conditions& set_point) const {

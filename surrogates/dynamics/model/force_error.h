@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "surrogates/dynamics/model/model.h"
@@ -38,6 +40,14 @@ private:
     std::vector<Parameter> parameters_;
     std::vector<std::pair<tables::ForceTable, std::vector<Channel>>> corrections_;
 };
+
+/// A model with one number of an effect a standard deviation higher and lower, as far as its bounds allow.
+struct ModelsBeside {
+    Model above, below;
+    double apart = 0;
+};
+/// Nothing where that number states no error or its bounds leave no room.
+std::optional<ModelsBeside> models_beside(const Model& model, std::size_t effect, std::size_t parameter);
 
 /// The model with its force tables drawn anew from their errors (tables of one file by one draw) and every number of
 /// its effects from its own deviation, within its bounds. Draws with the same seed and number are the same.

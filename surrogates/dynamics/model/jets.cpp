@@ -7,6 +7,8 @@
 
 namespace underbody::dynamics {
 
+constexpr double along_axis = 1e-12, in_plane = 1e-9;  ///< of a direction; m and of a direction: none to the side
+
 Vector3 cross(const Vector3& a, const Vector3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -62,7 +64,7 @@ double needed_yaw_torque(double munk_coefficient, double speed, double sideslip,
 
 TurnAllocation allocate_turning(const EvieJets& l, double force_x, double force_y, double moment_z) {
     const double cb = std::cos(l.beta), sg = std::sin(l.gamma), cg = std::cos(l.gamma);
-    if (std::abs(sg) < 1e-12) {
+    if (std::abs(sg) < along_axis) {
         throw core::InputError("range",
                                "straight jets (gamma = 0) make no side force: the map from thrusts has rank 2");
     }
@@ -140,7 +142,7 @@ public:
     }
 
 private:
-    static constexpr double tiny = 1e-6;
+    static constexpr double tiny = 1e-6, least_pivot = 0.1 * tiny;
 
     double gradient(std::size_t i) const {
         double value = right_[i];
@@ -179,7 +181,7 @@ private:
                 for (std::size_t k = 0; k < j; ++k) {
                     sum -= l(i, k) * l(j, k);
                 }
-                l(i, j) = i == j ? std::sqrt(std::max(sum, 0.1 * tiny)) : sum / l(j, j);
+                l(i, j) = i == j ? std::sqrt(std::max(sum, least_pivot)) : sum / l(j, j);
             }
             for (std::size_t k = 0; k < i; ++k) {
                 x[i] -= l(i, k) * x[k];
@@ -275,7 +277,7 @@ std::optional<EvieJets> turning_layout(std::span<const Jet> jets) {
     const Jet* aft = nullptr;
     int found = 0;
     for (const Jet& jet : jets) {
-        if (std::abs(jet.position[1]) < 1e-9 || std::abs(jet.direction[0]) < 1e-9) {
+        if (std::abs(jet.position[1]) < in_plane || std::abs(jet.direction[0]) < in_plane) {
             continue;
         }
         ++found;

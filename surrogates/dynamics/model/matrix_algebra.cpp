@@ -6,6 +6,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 
 extern "C" {
 void dgeev_(const char* jobvl, const char* jobvr, const int* n, double* a, const int* lda, double* wr, double* wi,
@@ -104,7 +105,7 @@ std::vector<EigenPair> eigen(const Matrix& a) {
             product += std::conj(one.left[i]) * one.right[i];
         }
         for (auto& part : one.left) {
-            part /= std::abs(product) > 1e-300 ? std::conj(product) : std::complex<double>(1.0);
+            part /= std::abs(product) > core::least_divisor ? std::conj(product) : std::complex<double>(1.0);
         }
     }
     std::stable_sort(result.begin(), result.end(),

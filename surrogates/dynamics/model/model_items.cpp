@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
@@ -9,6 +10,8 @@
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double inertia_rounding = 1e-9, weight_rounding = 1.0001;  ///< of numbers written with a few digits
 
 constexpr const char* length_hint = "a bare number is metres: write it with its unit, such as \"203.2 mm\"";
 constexpr const char* mass_hint = "a bare number is kilograms: write it with its unit, such as \"2200 g\"";
@@ -147,7 +150,7 @@ void check_inertia(const Vehicle& v, const core::TomlTable& vehicle) {
                                vehicle.place(products ? "inertia_product_xz" : "yaw_inertia"),
                                "a product of inertia is smaller than the root of the two moments beside it");
     }
-    if (principal[0] + principal[1] < principal[2] * (1 - 1e-9)) {
+    if (principal[0] + principal[1] < principal[2] * (1 - inertia_rounding)) {
         throw core::InputError(
             "range", "no body has the inertia " + text + ": each may be at most the sum of the other two",
             vehicle.place("yaw_inertia"), "added inertia is declared apart: added_inertia_roll, ...");
@@ -179,7 +182,7 @@ void check_model(Model& model, const core::TomlTable& root) {
     check_centres(v, vehicle);
     if (!std::isnan(v.length) && !std::isnan(v.width)) {
         const double height = std::isnan(v.height) ? std::min(v.length, v.width) : v.height;
-        const double displaced = model.environment.density * 3.14159265358979 / 6 * v.length * v.width * height;
+        const double displaced = model.environment.density * std::numbers::pi / 6 * v.length * v.width * height;
         if (v.mass > 30 * displaced || v.mass < displaced / 300) {
             throw core::InputError("range",
                                    "vehicle.mass = " + number(v.mass) +
@@ -188,7 +191,7 @@ void check_model(Model& model, const core::TomlTable& root) {
                                    std::string(mass_hint) + "; or the hull's size has another unit");
         }
     }
-    if (std::abs(v.net_weight) > v.mass * model.environment.gravity * 1.0001 && v.net_weight > 0) {
+    if (std::abs(v.net_weight) > v.mass * model.environment.gravity * weight_rounding && v.net_weight > 0) {
         throw core::InputError("range",
                                "vehicle.net_weight = " + number(v.net_weight) + " N is more than the whole weight, " +
                                    number(v.mass * model.environment.gravity) + " N",

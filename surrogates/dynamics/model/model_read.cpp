@@ -186,7 +186,8 @@ Jet read_jet(const core::TomlTable& table) {
     jet.position = read_vector(table, "position", "m");
     jet.direction = read_vector(table, "direction", "1");
     const double size = std::hypot(jet.direction[0], jet.direction[1], jet.direction[2]);
-    if (!(size > 1e-9)) {
+    constexpr double least_length = 1e-9;
+    if (!(size > least_length)) {
         throw core::InputError("range", "jet " + jet.name + " has no direction", table.place("direction"));
     }
     for (double& part : jet.direction) {

@@ -45,19 +45,22 @@ std::array<double, 2> holding_forces(const ContactProblem& p, ContactState beari
 
 namespace {
 
+constexpr double least_force = 1e-12;  ///< N
+constexpr double resting = 1e-10;      ///< of the acceleration without contact
+
 /// Forces of `state` if they are complementary for the candidates.
 std::optional<std::array<double, 2>> complementary(const ContactProblem& p, ContactState state,
                                                    ContactState candidates) {
     const std::array<double, 2> force = holding_forces(p, state);
-    const double size = std::max({std::abs(p.rest[0]), std::abs(p.rest[1]), 1e-12});
+    const double size = std::max({std::abs(p.rest[0]), std::abs(p.rest[1]), least_force});
     for (int edge = 0; edge < 2; ++edge) {
         const auto e = static_cast<std::size_t>(edge);
-        if (bears(state, edge) && !(force[e] >= -1e-12)) {
+        if (bears(state, edge) && !(force[e] >= -least_force)) {
             return {};
         }
         if (!bears(state, edge) && bears(candidates, edge)) {
             const double acceleration = p.matrix[e][0] * force[0] + p.matrix[e][1] * force[1] + p.rest[e];
-            if (!(acceleration >= -1e-10 * size)) {
+            if (!(acceleration >= -resting * size)) {
                 return {};
             }
         }

@@ -1,6 +1,7 @@
 #include "surrogates/dynamics/plant/curve.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace underbody::dynamics {
@@ -196,9 +197,10 @@ std::vector<double> Curve::zeros(double level) const {
             found.push_back(p.x + hi);
         }
     }
+    constexpr double same_root = 1e-13;  // of the range
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end(),
-                            [this](double l, double r) { return r - l < 1e-13 * (upper() - lower()); }),
+                            [this](double l, double r) { return r - l < same_root * (upper() - lower()); }),
                 found.end());
     return found;
 }
@@ -249,6 +251,7 @@ Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<
     };
     const double first_slope = end_slope(x.front(), x[1]);
     const double last_slope = end_slope(x.back(), x[x.size() - 2]);
+    constexpr std::array<double, 3> checked_at{0.2, 0.5, 0.8};
     // Depth first, so that knots come out in order.
     const auto refine = [&](auto&& self, double l, double r, int depth) -> void {
         double sl = 0, sr = 0;
@@ -257,7 +260,7 @@ Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<
         sr = r == x.back() ? last_slope : sr;
         const double width = r - l;
         bool good = true;
-        for (const double t : {0.2, 0.5, 0.8}) {
+        for (const double t : checked_at) {
             const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t);
             const double h01 = t * t * (3 - 2 * t), h11 = t * t * (t - 1);
             const double hermite = h00 * vl + h10 * width * sl + h01 * vr + h11 * width * sr;

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/force_sources.h"
@@ -11,6 +13,8 @@
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double everywhere = 1e6;  ///< m: a force that no gap changes holds up to there
 
 bool contains(const std::vector<Channel>& list, Channel channel) {
     return std::find(list.begin(), list.end(), channel) != list.end();
@@ -62,7 +66,7 @@ HeaveSource compile(const ForceSource& source, const Model& model, const Conditi
         compiled.curve = Curve::along(source.table, gap_axis, at);
     } else {
         const double flat = source.table.value(at.data());
-        compiled.curve = Curve({-1e6, 1e6}, {flat, flat}, {0, 0});
+        compiled.curve = Curve({-everywhere, everywhere}, {flat, flat}, {0, 0});
     }
     return compiled;
 }
@@ -84,7 +88,7 @@ GapRange lift_gap_range(const Model& model) {
 
 double contact_gap(const Model& model) {
     const double lower = lift_gap_range(model).lower;
-    return !std::isnan(model.contact.gap) ? model.contact.gap : (lower < 0 && lower > -1e299 ? lower : 0.0);
+    return !std::isnan(model.contact.gap) ? model.contact.gap : (lower < 0 && core::is_limit(lower) ? lower : 0.0);
 }
 
 double HeaveSource::Scale::factor(double value) const {
@@ -348,7 +352,8 @@ const HistoryKernel& history_kernel() {
         HistoryKernel k{};
         const double spacing = std::log(4.0);
         const double root_pi = std::sqrt(std::numbers::pi);
-        double rate = 0.003 / 16;
+        constexpr double slowest_rate = 0.003;  // 1/s
+        double rate = slowest_rate / 16;
         for (std::size_t i = 0; i < history_states; ++i, rate *= 4) {
             k.rate[i] = rate;
             k.weight[i] = spacing * std::sqrt(rate) / root_pi;
@@ -363,16 +368,25 @@ const HistoryKernel& history_kernel() {
     return kernel;
 }
 
-std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
+namespace {
+
+/// The gaps where a body may rest: of the tables, from contact on.
+std::pair<double, double> gap_range(const HeavePlant& plant) {
     const Curve& curve = plant.lift_curve();
-    double lower = std::max(plant.terms.contact_gap, plant.terms.table_lower > -1e299 ? plant.terms.table_lower : 0.0);
-    double upper = plant.terms.table_upper < 1e299 ? plant.terms.table_upper : lower + 10;
+    double lower =
+        std::max(plant.terms.contact_gap, core::is_limit(plant.terms.table_lower) ? plant.terms.table_lower : 0.0);
+    double upper = core::is_limit(plant.terms.table_upper) ? plant.terms.table_upper : lower + 10;
     // Tables that end at different gaps: one that has ended holds its value, and the body may well rest there.
-    if (plant.terms.table_upper < 1e299 && !curve.empty() && curve.lower() > -1e5 && curve.upper() < 1e5) {
+    if (core::is_limit(plant.terms.table_upper) && !curve.empty() && curve.lower() > -everywhere / 10 &&
+        curve.upper() < everywhere / 10) {
         lower = std::max(plant.terms.contact_gap, std::min(lower, curve.lower()));
         upper = std::max(upper, curve.upper());
     }
-    // Knots and points between them bracket every sign change of the static force that a table can make.
+    return {lower, upper};
+}
+
+/// Gaps between which lies every sign change of the static force that a table can make.
+std::vector<double> bracketing_gaps(const Curve& curve, double lower, double upper) {
     std::vector<double> grid;
     if (!curve.empty()) {
         for (const double knot : curve.knots()) {
@@ -385,6 +399,36 @@ std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
     std::sort(grid.begin(), grid.end());
     grid.erase(std::remove_if(grid.begin(), grid.end(), [&](double h) { return h < lower || h > upper; }), grid.end());
     grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
+    return grid;
+}
+
+/// `step`: over which slopes are taken; `stable` and `unstable` count the names.
+HeaveEquilibrium equilibrium_at(const HeavePlant& plant, double gap, double step, int& stable, int& unstable) {
+    HeaveEquilibrium e;
+    e.gap = gap;
+    e.stiffness = -(plant.static_force(e.gap + step) - plant.static_force(e.gap - step)) / (2 * step);
+    e.stable = e.stiffness > 0;
+    double slope = 0;
+    const double mass = plant.inertia(e.gap, slope);
+    const double damping = plant.damping(e.gap);
+    if (e.stable) {
+        e.frequency = std::sqrt(e.stiffness / mass);
+        e.damping_ratio = damping / (2 * std::sqrt(e.stiffness * mass));
+        e.name = stable < 26 ? std::string(1, static_cast<char>('A' + stable)) : "A" + std::to_string(stable);
+        ++stable;
+    } else {
+        const double half = damping / (2 * mass);
+        e.growth = -half + std::sqrt(half * half - e.stiffness / mass);
+        e.name = "U" + std::to_string(++unstable);
+    }
+    return e;
+}
+
+}  // namespace
+
+std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
+    const std::pair<double, double> range = gap_range(plant);
+    const std::vector<double> grid = bracketing_gaps(plant.lift_curve(), range.first, range.second);
     std::vector<HeaveEquilibrium> found;
     int stable = 0, unstable = 0;
     for (std::size_t i = 0; i + 1 < grid.size(); ++i) {
@@ -407,25 +451,7 @@ std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
             }
             ((plant.static_force(middle) > 0) == (flo > 0) ? lo : hi) = middle;
         }
-        HeaveEquilibrium e;
-        e.gap = (lo + hi) / 2;
-        const double step = 1e-6 * (upper - lower);
-        e.stiffness = -(plant.static_force(e.gap + step) - plant.static_force(e.gap - step)) / (2 * step);
-        e.stable = e.stiffness > 0;
-        double slope = 0;
-        const double mass = plant.inertia(e.gap, slope);
-        const double damping = plant.damping(e.gap);
-        if (e.stable) {
-            e.frequency = std::sqrt(e.stiffness / mass);
-            e.damping_ratio = damping / (2 * std::sqrt(e.stiffness * mass));
-            e.name = stable < 26 ? std::string(1, static_cast<char>('A' + stable)) : "A" + std::to_string(stable);
-            ++stable;
-        } else {
-            const double half = damping / (2 * mass);
-            e.growth = -half + std::sqrt(half * half - e.stiffness / mass);
-            e.name = "U" + std::to_string(++unstable);
-        }
-        found.push_back(e);
+        found.push_back(equilibrium_at(plant, (lo + hi) / 2, 1e-6 * (range.second - range.first), stable, unstable));
     }
     return found;
 }

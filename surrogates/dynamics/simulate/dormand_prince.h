@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/no_limit.h"
+
 namespace underbody::dynamics {
 
 /// rate(t, y, dydt). Error per step below 1 in units of scale[i], which is an absolute error per state.
@@ -24,7 +26,6 @@ public:
     [[nodiscard]] const State& rate() const { return k1_; }
     [[nodiscard]] double before_t() const { return t_before_; }
     [[nodiscard]] const State& before() const { return before_; }
-    [[nodiscard]] const State& before_rate() const { return before_rate_; }
     [[nodiscard]] long tries() const { return tries_; }
 
     /// One accepted step, not beyond t_end. False when the step became too small or the state not finite.
@@ -42,12 +43,12 @@ public:
                     y2[i] = y_[i] + h * sum(i);
                 }
             };
-            at([&](std::size_t i) { return 0.2 * k1_[i]; });
-            rate_(t_ + 0.2 * h, y2.data(), k2.data());
+            at([&](std::size_t i) { return c2 * k1_[i]; });
+            rate_(t_ + c2 * h, y2.data(), k2.data());
             at([&](std::size_t i) { return 3.0 / 40 * k1_[i] + 9.0 / 40 * k2[i]; });
-            rate_(t_ + 0.3 * h, y2.data(), k3.data());
+            rate_(t_ + c3 * h, y2.data(), k3.data());
             at([&](std::size_t i) { return 44.0 / 45 * k1_[i] - 56.0 / 15 * k2[i] + 32.0 / 9 * k3[i]; });
-            rate_(t_ + 0.8 * h, y2.data(), k4.data());
+            rate_(t_ + c4 * h, y2.data(), k4.data());
             at([&](std::size_t i) {
                 return 19372.0 / 6561 * k1_[i] - 25360.0 / 2187 * k2[i] + 64448.0 / 6561 * k3[i] - 212.0 / 729 * k4[i];
             });
@@ -68,14 +69,14 @@ public:
                                       17253.0 / 339200 * k5[i] + 22.0 / 525 * k6[i] - 1.0 / 40 * k7[i]);
                 error = std::max(error, std::abs(e) / scale_[i]);
             }
-            if (!(error < 1e300)) {
-                step_ = h * 0.1;
-                if (step_ < 1e-14) {
+            if (!(error < core::no_limit)) {
+                step_ = h * most_shrink;
+                if (step_ < least_step) {
                     return false;
                 }
                 continue;
             }
-            const double factor = error > 1e-10 ? 0.9 * std::exp2(-0.2 * std::log2(error)) : 5.0;
+            const double factor = error > 1e-10 ? safety * std::exp2(-0.2 * std::log2(error)) : 5.0;
             if (error <= 1) {
                 before_ = y_;
                 before_rate_ = k1_;
@@ -83,10 +84,10 @@ public:
                 y_ = next;
                 k1_ = k7;
                 t_ = last ? t_end : t_ + h;
-                step_ = h * std::clamp(factor, 0.2, 5.0);
+                step_ = h * std::clamp(factor, shrink, 5.0);
                 return true;
             }
-            step_ = h * std::clamp(factor, 0.1, 0.9);
+            step_ = h * std::clamp(factor, most_shrink, safety);
         }
         return false;
     }
@@ -100,6 +101,8 @@ public:
     }
 
 private:
+    static constexpr double c2 = 0.2, c3 = 0.3, c4 = 0.8;  // of the step, where the rate is asked
+    static constexpr double safety = 0.9, shrink = 0.2, most_shrink = 0.1, least_step = 1e-14;  // of steps; s
     const Rate& rate_;
     double t_;
     double t_before_ = 0;

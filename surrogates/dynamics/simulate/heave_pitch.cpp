@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
@@ -57,10 +58,10 @@ HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std
     if (speed_ != 0) {
         drag_ = ForceSources(model, "drag_force", held_, all);
     }
-    table_lower_ = std::max({-1e300, lift_.lower(Channel::gap), moment_.lower(Channel::gap)});
-    table_upper_ = std::min({1e300, lift_.upper(Channel::gap), moment_.upper(Channel::gap)});
-    pitch_lower_ = std::max({-1e300, lift_.lower(Channel::pitch), moment_.lower(Channel::pitch)});
-    pitch_upper_ = std::min({1e300, lift_.upper(Channel::pitch), moment_.upper(Channel::pitch)});
+    table_lower_ = std::max({-core::no_limit, lift_.lower(Channel::gap), moment_.lower(Channel::gap)});
+    table_upper_ = std::min({core::no_limit, lift_.upper(Channel::gap), moment_.upper(Channel::gap)});
+    pitch_lower_ = std::max({-core::no_limit, lift_.lower(Channel::pitch), moment_.lower(Channel::pitch)});
+    pitch_upper_ = std::min({core::no_limit, lift_.upper(Channel::pitch), moment_.upper(Channel::pitch)});
     contact_gap_ = vertical_.terms.contact_gap;
 }
 
@@ -293,9 +294,10 @@ LinearSystem HeavePitch::linearised(double gap, double pitch) const {
 }
 
 std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
-    const double low = std::max(contact_gap_, table_lower_ > -1e299 ? table_lower_ : contact_gap_),
-                 high = table_upper_ < 1e299 ? table_upper_ : low + 1;
+    const double low = std::max(contact_gap_, core::is_limit(table_lower_) ? table_lower_ : contact_gap_),
+                 high = core::is_limit(table_upper_) ? table_upper_ : low + 1;
     const double left = std::max(pitch_lower_, -0.5), right = std::min(pitch_upper_, 0.5);
+    constexpr double found_to = 1e-11, same_place = 1e-6;  // of the ranges
     std::vector<HeaveEquilibrium> found;
     const double size_h = high - low, size_p = right - left;
     // Newton from a grid of starts; steps kept within the tables.
@@ -316,7 +318,7 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
                 fp = (fp - f2) / (2 * dp);
                 mp = (mp - m2) / (2 * dp);
                 const double determinant = fh * mp - fp * mh;
-                if (!(std::abs(determinant) > 1e-300)) {
+                if (!(std::abs(determinant) > core::least_divisor)) {
                     break;
                 }
                 const double sh = std::clamp((-f * mp + m * fp) / determinant, -0.1 * size_h, 0.1 * size_h);
@@ -326,11 +328,11 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
                 if (h < low || h > high || p < left || p > right) {
                     break;
                 }
-                good = std::abs(sh) < 1e-11 * size_h && std::abs(sp) < 1e-11 * size_p;
+                good = std::abs(sh) < found_to * size_h && std::abs(sp) < found_to * size_p;
             }
             const double rise = half_length_ * std::abs(std::sin(p));
             const bool known = std::any_of(found.begin(), found.end(), [&](const HeaveEquilibrium& e) {
-                return std::abs(e.gap - h) < 1e-6 * size_h && std::abs(e.pitch - p) < 1e-6 * size_p;
+                return std::abs(e.gap - h) < same_place * size_h && std::abs(e.pitch - p) < same_place * size_p;
             });
             if (good && !known && h - contact_gap_ > rise) {
                 HeaveEquilibrium e;
@@ -345,7 +347,7 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
     int stable = 0, unstable = 0;
     for (HeaveEquilibrium& e : found) {
         const LinearSystem system = linearised(e.gap, e.pitch);
-        double worst = -1e300, slowest = 1e300, damping = 0;
+        double worst = -core::no_limit, slowest = core::no_limit, damping = 0;
         for (const EigenPair& mode : eigen(system.a)) {
             worst = std::max(worst, mode.value.real());
             if (mode.value.imag() > 0 && std::abs(mode.value) < slowest) {
@@ -353,9 +355,9 @@ std::vector<HeaveEquilibrium> HeavePitch::equilibria() const {
                 damping = -mode.value.real() / slowest;
             }
         }
-        e.stable = worst < 1e-6;  // quadratic drag alone leaves the linear motion undamped, yet it settles
+        e.stable = worst < no_growth;
         e.stiffness = -system.a(1, 0) * virtual_mass(e.gap);
-        e.frequency = e.stable && slowest < 1e299 ? slowest : 0;
+        e.frequency = e.stable && core::is_limit(slowest) ? slowest : 0;
         e.damping_ratio = e.stable ? damping : 0;
         e.growth = e.stable ? 0 : worst;
         e.name = e.stable ? std::string(1, static_cast<char>('A' + std::min(stable++, 25)))

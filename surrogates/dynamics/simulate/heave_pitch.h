@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/figure.h"
+#include "core/no_limit.h"
 #include "core/progress.h"
 #include "core/table.h"
 #include "surrogates/dynamics/linear/linear.h"
@@ -22,6 +23,10 @@
 #include "surrogates/dynamics/plant/heave.h"
 
 namespace underbody::dynamics {
+
+/// 1/s: a mode that grows no faster does not grow. Quadratic drag alone leaves the linear motion undamped, yet it
+/// settles.
+constexpr double no_growth = 1e-6;
 
 /// gap (m), heave_velocity (m/s), pitch (rad), pitch_rate (rad/s).
 using PitchState = std::array<double, 4>;
@@ -114,7 +119,8 @@ private:
     double inertia_ = 0, depth_ = 0, forward_ = 0, half_length_ = 0, buoyancy_ = 0, friction_ = 0, restitution_ = 0,
            speed_ = 0, input_ = 0;
     double drag_moment_ = 0;
-    double contact_gap_ = 0, table_lower_ = -1e300, table_upper_ = 1e300, pitch_lower_ = -1e300, pitch_upper_ = 1e300;
+    double contact_gap_ = 0, table_lower_ = -core::no_limit, table_upper_ = core::no_limit,
+           pitch_lower_ = -core::no_limit, pitch_upper_ = core::no_limit;
 };
 
 struct PitchTrajectory {

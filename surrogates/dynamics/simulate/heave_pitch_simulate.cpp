@@ -12,22 +12,24 @@
 
 namespace underbody::dynamics {
 
+constexpr double touching_gap = 1e-8, touching_speed = 1e-7;  ///< m, m/s, of an edge
+
 bool land(const HeavePitch& plant, PitchState& y, ContactState& bearing, const Surroundings& around) {
     const std::array<double, 2> gaps = plant.edge_gaps(y);
     const double deepest = std::min(gaps[0], gaps[1]);
     y[0] -= std::min(deepest, 0.0);
     int struck = 0, touching = 0;
     for (std::size_t e = 0; e < 2; ++e) {
-        struck |= plant.edge_gaps(y)[e] <= 1e-8 ? 1 << e : 0;
+        struck |= plant.edge_gaps(y)[e] <= touching_gap ? 1 << e : 0;
     }
     std::array<double, 2> speeds = plant.edge_speeds(y);
-    const bool strikes = ((struck & 1) && speeds[0] < -1e-7) || ((struck & 2) && speeds[1] < -1e-7);
+    const bool strikes = ((struck & 1) && speeds[0] < -touching_speed) || ((struck & 2) && speeds[1] < -touching_speed);
     if (strikes) {
         y = plant.impact(y, static_cast<ContactState>(struck));
         speeds = plant.edge_speeds(y);
     }
     for (std::size_t e = 0; e < 2; ++e) {
-        touching |= (struck >> e & 1) && speeds[e] <= 1e-7 ? 1 << e : 0;
+        touching |= (struck >> e & 1) && speeds[e] <= touching_speed ? 1 << e : 0;
     }
     bearing = plant.settle(y, static_cast<ContactState>(touching), around);
     return strikes;

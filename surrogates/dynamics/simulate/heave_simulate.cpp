@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
@@ -11,11 +12,15 @@
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/motion_driver.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
 
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double row_slack = 1e-6;        ///< of the step of the output
+constexpr double lift_off_speed = 1e-12;  ///< m/s
 
 constexpr double slowest_bounce = 1e-5;  ///< m/s: slower, the body stays on the ground
 
@@ -138,7 +143,7 @@ double Flight::max_step() const {
     // Recorded inputs have corners that the integrator must not step over.
     double step = 0;
     if (run_) {
-        step = 1e300;
+        step = core::no_limit;
         for (std::size_t i = 0; i + 1 < run_->samples(); ++i) {
             step = std::min(step, run_->time()[i + 1] - run_->time()[i]);
         }
@@ -206,7 +211,7 @@ double Flight::rest(double t, std::vector<double>& y, core::Progress& progress) 
         y = lying(t, next);
         t = next;
         accept_rest();
-        record_rows(t + 1e-6 * options_.output_step);
+        record_rows(t + row_slack * options_.output_step);
     }
     return t_end;
 }
@@ -220,7 +225,7 @@ void Flight::begin_piece(double& t, std::vector<double>& y, core::Progress& prog
     t = rest(t, y, progress);
     if (t < end()) {
         note(t, "lift_off", y.data());
-        y[1] = 1e-12;
+        y[1] = lift_off_speed;
     }
 }
 
@@ -294,7 +299,7 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     remark_outside(out.remarks, out.outside,
                    " (" + core::format_number(plant.terms.table_lower, 6) + " to " +
                        core::format_number(plant.terms.table_upper, 6) + " m)");
-    if (run && !out.time.empty() && out.time.back() > inputs.time.back() + 1e-9) {
+    if (run && !out.time.empty() && out.time.back() > inputs.time.back() + same_instant) {
         out.remarks.push_back(
             {core::Problem::Severity::warning,
              "the inputs end at " + core::format_number(inputs.time.back(), 6) + " s; their last values are held",
@@ -321,7 +326,8 @@ core::Figure trajectory_figure(const Trajectory& trajectory, const std::vector<H
     figure.x = {"time", "s"};
     figure.y = {"gap", "mm"};
     core::FigureCurve gap{"gap", trajectory.time, {}, core::palette(0)};
-    double lowest = 1e300, highest = -1e300;
+    constexpr double beside = 0.2;  // of the range of gaps: equilibria that are drawn
+    double lowest = core::no_limit, highest = -core::no_limit;
     for (const double h : trajectory.gap) {
         gap.y.push_back(1e3 * h);
         lowest = std::min(lowest, h);
@@ -329,7 +335,7 @@ core::Figure trajectory_figure(const Trajectory& trajectory, const std::vector<H
     }
     figure.curves.push_back(std::move(gap));
     for (const HeaveEquilibrium& e : equilibria) {
-        if (e.gap > lowest - 0.2 * (highest - lowest) && e.gap < highest + 0.2 * (highest - lowest)) {
+        if (e.gap > lowest - beside * (highest - lowest) && e.gap < highest + beside * (highest - lowest)) {
             figure.lines.push_back({false, 1e3 * e.gap, e.name + (e.stable ? " (stable)" : " (unstable)")});
         }
     }

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 
 namespace underbody::dynamics {
 
 namespace {
 
-constexpr double never = 1e300;
+constexpr double never = core::no_limit;
 constexpr double same_time = 1e-6;  ///< times the output step: times nearer than this are one row
 constexpr double rounding = 1e-12;  ///< of a time over the step, relative
 

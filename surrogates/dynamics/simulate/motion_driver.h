@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/no_limit.h"
 #include "core/progress.h"
 #include "surrogates/dynamics/simulate/ode.h"
 
@@ -15,12 +16,12 @@ public:
     struct Settings {
         std::size_t states = 0, events = 4;
         double duration = 0;
-        double output_step = 0;          ///< s; 0: a row after each step of the integrator
-        double tolerance = 1e-9;         ///< relative
-        double absolute = 1e-3;          ///< times the relative tolerance
-        double max_step = 0;             ///< of the integrator, s; 0: any
-        double longest_advance = 1e300;  ///< s, between two calls of `accept`
-        double sampling = 0;             ///< s, of a digital controller; 0: none
+        double output_step = 0;                   ///< s; 0: a row after each step of the integrator
+        double tolerance = 1e-9;                  ///< relative
+        double absolute = 1e-3;                   ///< times the relative tolerance
+        double max_step = 0;                      ///< of the integrator, s; 0: any
+        double longest_advance = core::no_limit;  ///< s, between two calls of `accept`
+        double sampling = 0;                      ///< s, of a digital controller; 0: none
     };
 
     MotionDriver() = default;

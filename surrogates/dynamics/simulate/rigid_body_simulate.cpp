@@ -203,7 +203,8 @@ void BodyFlight::fly(const BodyState& start, double t0, core::Progress& progress
 BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, const JetCommand& command,
                              const BodyOptions& options, core::Progress& progress, const InputSignals& inputs) {
     refuse_odd_start(start);
-    if (std::abs(start[state_theta]) > 1.5) {
+    constexpr double upright = 1.5;  // rad
+    if (std::abs(start[state_theta]) > upright) {
         throw core::InputError("range", "the start stands on its nose or tail: pitch " +
                                             core::format_number(degrees * start[state_theta], 4) + " deg");
     }

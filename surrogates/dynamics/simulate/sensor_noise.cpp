@@ -31,9 +31,10 @@ double reading_step(std::span<const double> values) {
     if (5 * equal < pairs || !std::isfinite(step)) {
         return 0;
     }
+    constexpr double off_grid = 0.02;  // of the step
     std::size_t on_grid = 0;
     each_difference([&](double difference) {
-        on_grid += std::abs(difference / step - std::round(difference / step)) < 0.02 ? 1 : 0;
+        on_grid += std::abs(difference / step - std::round(difference / step)) < off_grid ? 1 : 0;
     });
     return 100 * on_grid >= 98 * pairs ? step : 0;
 }
@@ -47,23 +48,24 @@ double middle_of(std::vector<double>& values) {
     return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
 }
 
-/// 1.4826 times the median distance from the median.
+/// sigma_of_median_distance times the median distance from the median.
 double robust_deviation(std::vector<double> values) {
     const double middle = middle_of(values);
     for (double& value : values) {
         value = std::abs(value - middle);
     }
-    return 1.482602218505602 * middle_of(values);
+    return sigma_of_median_distance * middle_of(values);
 }
 
 /// White noise out of differences of an order; NaN with fewer than six.
 double noise_by_differences(std::span<const double> time, std::span<const double> values, std::size_t order) {
+    constexpr double uneven = 0.2;  // of a step in time
     std::vector<double> differences;
     for (std::size_t i = order; i < values.size(); ++i) {
         bool even = true;
         for (std::size_t k = 0; k + 1 < order && !time.empty(); ++k) {
             const double last = time[i] - time[i - 1], before = time[i - k - 1] - time[i - k - 2];
-            even = even && std::abs(before - last) < 0.2 * last;
+            even = even && std::abs(before - last) < uneven * last;
         }
         const double difference = order == 2 ? values[i] - 2 * values[i - 1] + values[i - 2]
                                              : values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3];

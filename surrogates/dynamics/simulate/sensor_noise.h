@@ -5,6 +5,14 @@
 
 namespace underbody::dynamics {
 
+/// Standard deviation of normal numbers over the median of their distances from their median.
+constexpr double sigma_of_median_distance = 1.482602218505602;
+/// s: times that differ by less are one; a reading so late belongs to a window that ends with it.
+constexpr double same_instant = 1e-9, window_slack = 1e-6;
+
+/// What a sensor of gap, and one of speed, is taken to scatter by where its readings do not say; m, m/s.
+constexpr double usual_gap_noise = 1e-4, usual_velocity_noise = 1e-3;
+
 /// The step of a sensor that rounds: the grid on which nearly all readings lie when a fifth of them or more repeat the
 /// one before. 0 when there is none.
 double reading_step(std::span<const double> values);

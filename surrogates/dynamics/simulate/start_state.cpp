@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
+
 namespace underbody::dynamics {
 
 StartState start_state(const std::vector<double>& time, const std::vector<double>& gap, std::size_t first,
                        std::size_t last) {
     constexpr double window = 0.5;  // s: short beside the motions of a vehicle, long beside a sensor's noise
     constexpr std::size_t least = 5;
+    constexpr double one_instant = 1e-12;  // spread of the times over their size
     StartState start;
-    double n = 0, st = 0, sh = 0, stt = 0, sth = 0, low = 1e300, high = -1e300;
+    double n = 0, st = 0, sh = 0, stt = 0, sth = 0, low = core::no_limit, high = -core::no_limit;
     for (std::size_t i = first; i <= last && i < time.size(); ++i) {
         const double t = time[i] - time[first];
         if (std::isfinite(gap[i]) && (t < window || start.readings < least)) {
@@ -28,7 +31,7 @@ StartState start_state(const std::vector<double>& time, const std::vector<double
         return start;
     }
     const double determinant = n * stt - st * st;
-    if (determinant > 1e-12 * n * stt) {
+    if (determinant > one_instant * n * stt) {
         start.velocity = (n * sth - st * sh) / determinant;
         start.slope_factor = n / determinant;
         start.gap_factor = stt / determinant;

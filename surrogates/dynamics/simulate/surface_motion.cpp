@@ -77,6 +77,7 @@ SurfaceMotion::Contact SurfaceMotion::contact(const SurfaceState& y, const Loads
                  width = model_.contact.slip_speed;
     // The point of the resultant and the slip there depend on each other only through sway in yaw: settled in a few
     // rounds.
+    constexpr double rounding = 1e-15;
     for (int round = 0; round < 8; ++round) {
         const double sx = y[0], sy = y[1] + y[2] * c.forward, size = std::sqrt(sx * sx + sy * sy + width * width);
         c.friction_x = -limit * sx / size;
@@ -85,7 +86,7 @@ SurfaceMotion::Contact SurfaceMotion::contact(const SurfaceState& y, const Loads
         const double next = pressed > 0 ? -(all.pitch + base_[2] * c.friction_x) / pressed : 0.0;
         const double change = std::abs(next - c.forward);
         c.forward = next;
-        if (change < 1e-15) {
+        if (change < rounding) {
             break;
         }
     }
@@ -140,12 +141,13 @@ std::vector<double> surface_trim_thrusts(const SurfaceMotion& motion, double spe
     std::vector<double> thrust(jets.size(), 0.0);
     const SurfaceState y{speed, 0, 0, 0, 0, 0};
     // Jets press the body down and friction grows with that: a fixed point, contracting while friction is below one.
+    constexpr double least_missing = 1e-10, straight = 1e-6, turning = 1e-4;  // N, m/s^2, rad/s^2
     Wrench wanted;
     for (int round = 0; round < 200; ++round) {
         SurfaceState d{};
         motion.rate(y, thrust, d);
         const double missing = -d[0] * (motion.model().vehicle.mass + motion.model().vehicle.added_mass_surge);
-        if (std::abs(missing) < 1e-10) {
+        if (std::abs(missing) < least_missing) {
             break;
         }
         wanted.force[0] += missing;
@@ -153,7 +155,7 @@ std::vector<double> surface_trim_thrusts(const SurfaceMotion& motion, double spe
     }
     SurfaceState d{};
     motion.rate(y, thrust, d);
-    if (std::abs(d[0]) > 1e-6 || std::abs(d[2]) > 1e-4) {
+    if (std::abs(d[0]) > straight || std::abs(d[2]) > turning) {
         throw core::InputError("range",
                                "the jets cannot drive a straight run at " + core::format_number(speed, 4) + " m/s",
                                {motion.model().name, {}, {}, {}}, "a lower speed, stronger jets, or less friction");

@@ -92,7 +92,7 @@ void refuse_odd_start(std::span<const double> start) {
 }
 
 void refuse_start_in_ground(const std::array<double, 2>& gaps) {
-    if (std::min(gaps[0], gaps[1]) < -1e-9) {
+    if (std::min(gaps[0], gaps[1]) < -start_depth) {
         throw core::InputError("range",
                                "the start lies in the ground: gaps of nose and tail edge " +
                                    core::format_number(gaps[0], 4) + " m, " + core::format_number(gaps[1], 4) + " m",

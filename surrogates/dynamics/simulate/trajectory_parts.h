@@ -14,6 +14,8 @@
 
 namespace underbody::dynamics {
 
+constexpr double start_depth = 1e-9;  ///< m, below the ground: a start that was meant on it
+
 /// Points at the gap (mm) where events of each kind happened; a kind without events gets none.
 void add_events(core::Figure& figure, const std::vector<TrajectoryEvent>& events,
                 std::initializer_list<const char*> kinds);

@@ -73,8 +73,9 @@ SliderFilm slider_film(const std::function<double(double)>& gap, double length, 
     film.load_per_width = load;
     film.highest = *std::max_element(film.pressure.begin(), film.pressure.end());
     film.lowest = *std::min_element(film.pressure.begin(), film.pressure.end());
+    constexpr double no_load = 1e-9;
     const double size = (film.highest - film.lowest) * length;
-    film.centre_of_pressure = std::abs(load) > 1e-9 * size ? moment / load : std::nan("");
+    film.centre_of_pressure = std::abs(load) > no_load * size ? moment / load : std::nan("");
     film.reduced_reynolds = std::abs(speed) * widest * widest * density / (viscosity * length);
     film.valid = film.reduced_reynolds <= 1;
     return film;
@@ -82,7 +83,8 @@ SliderFilm slider_film(const std::function<double(double)>& gap, double length, 
 
 double slider_load_coefficient(double ratio) {
     const double k = ratio - 1;
-    if (std::abs(k) < 1e-4) {
+    constexpr double nearly_parallel = 1e-4;
+    if (std::abs(k) < nearly_parallel) {
         return k / 2 * (1 - 1.5 * k);  // series about parallel plates
     }
     return 6 / (k * k) * (std::log(ratio) - 2 * k / (ratio + 1));

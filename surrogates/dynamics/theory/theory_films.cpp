@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/text.h"
+#include "core/water.h"
 #include "surrogates/dynamics/theory/film.h"
 #include "surrogates/dynamics/theory/theory.h"
 
@@ -18,7 +19,7 @@ using Values = ClosedForm::Values;
 using std::numbers::pi;
 
 const ClosedForm::Input viscosity{"viscosity", "Pa s", "dynamic viscosity of the water", 1.0e-3};
-const ClosedForm::Input density{"density", "kg/m^3", "of the water", 998.0};
+const ClosedForm::Input density{"density", "kg/m^3", "of the water", core::default_water_density};
 const ClosedForm::Input speed{"speed", "m/s", "of the ground under the body", 0.5};
 
 std::string number(double value) { return core::format_number(value, 3); }
@@ -29,7 +30,8 @@ ClosedForm::Limit inertia_limit(double reduced) {
 }
 
 ClosedForm::Limit thin_limit(double gap, double size) {
-    return {"the film is thin: gap over size = " + number(gap / size) + ", to be below 0.1", gap <= 0.1 * size};
+    constexpr double thin = 0.1;
+    return {"the film is thin: gap over size = " + number(gap / size) + ", to be below 0.1", gap <= thin * size};
 }
 
 Result slider(const Values& v) {

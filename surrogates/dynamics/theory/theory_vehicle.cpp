@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "core/water.h"
 #include "surrogates/dynamics/linear/linear.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/jets.h"
@@ -222,7 +223,7 @@ std::vector<ClosedForm::Input> jet_inputs() {
 }  // namespace
 
 std::vector<core::ClosedForm> vehicle_forms() {
-    const ClosedForm::Input density{"density", "kg/m^3", "of the water", 998.0},
+    const ClosedForm::Input density{"density", "kg/m^3", "of the water", core::default_water_density},
         viscosity{"kinematic_viscosity", "m^2/s", "of the water", 1.0e-6};
     const ClosedForm::Input ax{"added_mass_x", "kg", "A_x", needed}, ay{"added_mass_y", "kg", "A_y", needed};
     return {

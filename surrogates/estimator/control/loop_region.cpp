@@ -205,13 +205,7 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
         sum += share;
         squares += share * share;
     }
-    const auto n = static_cast<double>(draws);
-    for (float& value : map.safe) {
-        value /= static_cast<float>(draws);
-    }
-    map.area_mean = sum / n;
-    map.area_sigma =
-        draws > 1 ? std::sqrt(std::max(0.0, squares / n - map.area_mean * map.area_mean) * n / (n - 1)) : 0.0;
+    dynamics::take_mean(map, sum, squares);
     dynamics::add_path_remark(map.remarks, map.path_outside_fraction,
                               dynamics::table_range_text(plant.lower, plant.upper));
     if (!(loop.gap_noise > 0 || loop.velocity_noise > 0)) {
@@ -219,6 +213,44 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
     }
     return map;
 }
+
+namespace {
+
+/// The classes of a loop's ends: held, parked at other gaps, contact, escape, undecided.
+struct LoopEnds {
+    LoopEnds(double held_gap, const std::vector<double>& parked, double within)
+        : held(held_gap), places(parked), tolerance(within), classes{{"held", EndKind::attractor, held_gap, 0}} {
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            classes.push_back({"parked " + std::to_string(i + 1), EndKind::attractor, places[i], 0});
+        }
+        contact = static_cast<int>(classes.size());
+        classes.push_back({"contact", EndKind::contact, NAN, 0});
+        classes.push_back({"escape", EndKind::escape, NAN, 0});
+        classes.push_back({"undecided", EndKind::undecided, NAN, 0});
+    }
+
+    [[nodiscard]] End end_of(const Outcome& o) const {
+        if (o.kind == EndKind::contact || o.kind == EndKind::escape || o.kind == EndKind::undecided) {
+            const int after = o.kind == EndKind::contact ? 0 : o.kind == EndKind::escape ? 1 : 2;
+            return End{contact + after, o.time, o.outside};
+        }
+        if (std::abs(o.gap - held) <= tolerance || places.empty()) {
+            return End{0, o.time, o.outside};
+        }
+        const auto nearest = std::min_element(places.begin(), places.end(), [&](double a, double b) {
+            return std::abs(a - o.gap) < std::abs(b - o.gap);
+        });
+        return End{1 + static_cast<int>(nearest - places.begin()), o.time, o.outside};
+    }
+
+    double held;
+    const std::vector<double>& places;
+    double tolerance;
+    std::vector<EndClass> classes;
+    int contact = 0;
+};
+
+}  // namespace
 
 dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const ControlLaw& law,
                                       const LoopEstimator& estimator, const LoopOptions& loop,
@@ -241,29 +273,8 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
         grid, [&](std::span<const double> x, std::span<const double> y, std::span<End>) { first = outcomes_of(x, y); },
         progress);
     const std::vector<double> places = resting_places(first, law.reference_gap, tolerance);
-    std::vector<EndClass> classes{{"held", EndKind::attractor, law.reference_gap, 0}};
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        classes.push_back({"parked " + std::to_string(i + 1), EndKind::attractor, places[i], 0});
-    }
-    const int contact = static_cast<int>(classes.size());
-    classes.push_back({"contact", EndKind::contact, NAN, 0});
-    classes.push_back({"escape", EndKind::escape, NAN, 0});
-    classes.push_back({"undecided", EndKind::undecided, NAN, 0});
-    const auto end_of = [&](const Outcome& o) {
-        if (o.kind == EndKind::contact || o.kind == EndKind::escape || o.kind == EndKind::undecided) {
-            return End{contact + (o.kind == EndKind::contact  ? 0
-                                  : o.kind == EndKind::escape ? 1
-                                                              : 2),
-                       o.time, o.outside};
-        }
-        if (std::abs(o.gap - law.reference_gap) <= tolerance || places.empty()) {
-            return End{0, o.time, o.outside};
-        }
-        const auto nearest = std::min_element(places.begin(), places.end(), [&](double a, double b) {
-            return std::abs(a - o.gap) < std::abs(b - o.gap);
-        });
-        return End{1 + static_cast<int>(nearest - places.begin()), o.time, o.outside};
-    };
+    const LoopEnds judged(law.reference_gap, places, tolerance);
+    const auto end_of = [&](const Outcome& o) { return judged.end_of(o); };
     std::vector<End> ends;
     for (const Outcome& o : first) {
         ends.push_back(end_of(o));
@@ -274,7 +285,7 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
             const auto outcomes = outcomes_of(x, y);
             std::transform(outcomes.begin(), outcomes.end(), out.begin(), end_of);
         },
-        ends, classes, progress);
+        ends, judged.classes, progress);
     region.contact_gap = plant.contact_gap;
     region.escape_gap = judge.far;
     region.table_lower = plant.lower;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 
 namespace underbody::estimator {
 
@@ -87,7 +88,7 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
     const auto d = dynamics::singular_value_decomposition(o);
     Observability result;
     result.singular_values = d.s;
-    const double cut = tolerance * std::max(d.s.front(), 1e-300);
+    const double cut = tolerance * core::never_zero(d.s.front());
     for (const double v : d.s) {
         result.rank += v > cut ? 1U : 0U;
     }

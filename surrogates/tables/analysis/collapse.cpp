@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/analysis/figures.h"
@@ -187,6 +188,20 @@ std::string text_of(const Collapse& c, std::size_t beyond, std::size_t all, bool
            ", " + c.by + " " + core::format_number(worst->level, 4) + " " + c.by_unit;
 }
 
+void add_curve(Collapse& result, const ForceTable& curve) {
+    const auto& axis = curve.axes().front();
+    const bool log = spans_decades(axis.lower, axis.upper);
+    for (int i = 0; i <= 400; ++i) {
+        const double t = i / 400.0;
+        const double x = i == 400 ? axis.upper
+                         : log    ? axis.lower * std::pow(axis.upper / axis.lower, t)
+                                  : axis.lower + (axis.upper - axis.lower) * t;
+        result.curve_x.push_back(x);
+        result.curve_y.push_back(curve.value(&x));
+        result.curve_sigma.push_back(curve.sigma(&x));
+    }
+}
+
 }  // namespace
 
 Collapse collapse(const core::Table& table, const std::string& quantity, const CollapseOptions& options) {
@@ -224,9 +239,10 @@ Collapse collapse(const core::Table& table, const std::string& quantity, const C
         std::vector<std::pair<double, double>> deviations;
         for (const auto& p : members) {
             const auto expected = reference.at(p.x);
-            const double joint = !expected ? 1
-                                           : std::max({std::hypot(expected->second, p.sigma),
-                                                       stated ? 0 : 0.5 * options.tolerance * largest, 1e-300});
+            const double joint = !expected
+                                     ? 1
+                                     : std::max({std::hypot(expected->second, p.sigma),
+                                                 stated ? 0 : 0.5 * options.tolerance * largest, core::least_divisor});
             const double deviation = expected ? (p.y - expected->first) / joint : std::nan("");
             out_x.push_back(p.x);
             out_y.push_back(p.y);
@@ -273,17 +289,7 @@ Collapse collapse(const core::Table& table, const std::string& quantity, const C
     result.points.add_numbers(result.by, result.by_unit, out_level);
     result.points.add_numbers("deviation", "1", out_deviation);
     if (reference.curve) {
-        const auto& axis = reference.curve->axes().front();
-        const bool log = spans_decades(axis.lower, axis.upper);
-        for (int i = 0; i <= 400; ++i) {
-            const double t = i / 400.0;
-            const double x = i == 400 ? axis.upper
-                             : log    ? axis.lower * std::pow(axis.upper / axis.lower, t)
-                                      : axis.lower + (axis.upper - axis.lower) * t;
-            result.curve_x.push_back(x);
-            result.curve_y.push_back(reference.curve->value(&x));
-            result.curve_sigma.push_back(reference.curve->sigma(&x));
-        }
+        add_curve(result, *reference.curve);
     }
     return result;
 }

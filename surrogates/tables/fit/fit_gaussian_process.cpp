@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/tables/fit/fit.h"
 #include "surrogates/tables/fit/force_table_impl.h"
@@ -109,7 +110,7 @@ SetPoints reduced(const SetPoints& points, std::size_t most, core::Problems& rem
             result.value.push_back(value);
             result.row.push_back(points.row[box.front()]);
             if (points.has_sigma()) {
-                result.sigma.push_back(std::sqrt(std::max(stated, 1e-300)));
+                result.sigma.push_back(std::sqrt(core::never_zero(stated)));
             }
         }
         remarks.push_back({core::Problem::Severity::warning,

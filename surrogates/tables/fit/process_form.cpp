@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/no_limit.h"
 #include "core/text.h"
 
 namespace underbody::tables {
@@ -35,7 +36,7 @@ GpData data_of(const SetPoints& points, const std::vector<std::size_t>& rows, Fo
         square += (v - mean) * (v - mean);
     }
     form.offset = mean;
-    form.size = std::max(std::sqrt(square / static_cast<double>(z.size())), 1e-300);
+    form.size = core::never_zero(std::sqrt(square / static_cast<double>(z.size())));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto& x = points.x[rows[i]];
         for (std::size_t k = 0; k < n; ++k) {

@@ -5,6 +5,7 @@
 #include <nlopt.hpp>
 #include <utility>
 
+#include "core/no_limit.h"
 #include "surrogates/tables/search/design_search.h"
 #include "surrogates/tables/search/sampling.h"
 
@@ -84,7 +85,7 @@ struct DesignSearch::OnTheCube {
         }
         for (const Limit& limit : problem.limits) {
             const double spread = search.bind(limit.response).surrogate->spread();
-            if (limit.upper < 1e299) {
+            if (core::is_limit(limit.upper)) {
                 limits.push_back(response(
                     search, limit.response,
                     [=](ResponseValue v) {
@@ -94,7 +95,7 @@ struct DesignSearch::OnTheCube {
                         return std::pair{1 / spread, sigmas / spread};
                     }));
             }
-            if (limit.lower > -1e299) {
+            if (core::is_limit(limit.lower)) {
                 limits.push_back(response(
                     search, limit.response,
                     [=](ResponseValue v) {

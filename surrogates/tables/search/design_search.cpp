@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "surrogates/tables/search/acquisition.h"
 #include "surrogates/tables/search/sampling.h"
@@ -244,7 +245,7 @@ double DesignSearch::log_acquisition(std::span<const double> x, double best, con
     }
     Candidate c = describe(x);
     c.chance_solved = chance_solved(problem_.variables, x, options);
-    double value = std::log(std::max(c.chance_valid, 1e-300)) + std::log(c.chance_solved);
+    double value = std::log(core::never_zero(c.chance_valid)) + std::log(c.chance_solved);
     if (!std::isnan(best)) {  // with nothing valid yet, what is most likely valid comes first
         const Objective& objective = problem_.objectives.front();
         const ResponseValue v = c.objectives.front();

@@ -1,5 +1,7 @@
 #include "surrogates/tables/search/limits_alone.h"
 
+#include "core/no_limit.h"
+
 namespace underbody::tables {
 
 std::vector<std::optional<LimitAlone>> limits_alone(const SearchProblem& problem,
@@ -9,9 +11,9 @@ std::vector<std::optional<LimitAlone>> limits_alone(const SearchProblem& problem
     for (const Limit& limit : problem.limits) {
         SearchProblem alone = problem;
         Objective inside{limit.response, Objective::Sense::target, 0.5 * (limit.lower + limit.upper)};
-        if (limit.upper >= 1e299) {
+        if (!core::is_limit(limit.upper)) {
             inside.sense = Objective::Sense::maximise;
-        } else if (limit.lower <= -1e299) {
+        } else if (!core::is_limit(limit.lower)) {
             inside.sense = Objective::Sense::minimise;
         }
         alone.objectives = {inside};

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/no_limit.h"
+
 namespace underbody::tables {
 
 namespace {
@@ -169,7 +171,7 @@ double MultiFidelity::variance_after(std::span<const double> target, std::span<c
         through *= factor(t);
     }
     const double scatter = processes_[level].parameters().scatter;
-    const double gain = through * through * c[1] * c[1] / std::max(c[3] + scatter * scatter, 1e-300);
+    const double gain = through * through * c[1] * c[1] / core::never_zero(c[3] + scatter * scatter);
     return std::max(0.0, at(target).variance - gain);
 }
 
