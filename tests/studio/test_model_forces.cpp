@@ -55,7 +55,7 @@ protected:
 
 TEST_F(ModelForces, TableAndLinearStateOneErrorOfAStiffness) {
     const nlohmann::json table = json({"table", "equilibria", "model.toml"}), linear = json({"linear", "model.toml"});
-    const nlohmann::json &of_table = table["equilibria"], &of_linear = linear["equilibria"];
+    const nlohmann::json &of_table = table["equilibria"], &of_linear = linear["heave"];
     ASSERT_EQ(of_table.size(), of_linear.size());
     for (std::size_t i = 0; i < of_table.size(); ++i) {
         const double k = of_linear[i]["stiffness"];
