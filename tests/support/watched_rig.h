@@ -20,6 +20,7 @@ struct WatchedRig {
     double wild = 0;         ///< share of readings that are anything within 0.5 m
     double lost = 0;       ///< share of readings that are lost, half of them one by one, half in silences of up to 20 s
     double lost_rows = 0;  ///< share of rows that are lost one by one, with the input that is logged in them
+    double text = 0;       ///< share of fields that hold no number, of the reading and of the input
     // What changes:
     double force = 0;         ///< N, constant
     double friction = 0;      ///< N, against the motion
@@ -38,6 +39,7 @@ struct WatchedRig {
     double time = 0, input = 0, reading = 0;
     bool silent = false;  ///< the row was lost: the reading and the input that was logged beside it
     bool missed = false;  ///< the reading alone was lost
+    bool unread = false;  ///< the input alone was lost
 
     /// To the next reading; the input acts from the reading before on.
     void advance() {
@@ -73,6 +75,10 @@ struct WatchedRig {
         if (lost_rows > 0) {
             silent = time < silent_until || random.uniform() < lost_rows;
         }
+        if (text > 0) {
+            missed = random.uniform() < text;
+            unread = random.uniform() < text;
+        }
         if (random.uniform() < step / 10) {
             target = middle + random.uniform(-0.02, 0.02);
         }
@@ -89,7 +95,9 @@ struct WatchedRig {
         if (!missed) {
             alarm = watch.gap(time, reading);
         }
-        watch.input(time, input);
+        if (!unread) {
+            watch.input(time, input);
+        }
         return alarm;
     }
 

@@ -32,6 +32,8 @@ constexpr double longest_learned = 400;     ///< s, of what is learned from
 constexpr double input_memory = 300;        ///< s: how much the input may change at once is remembered
 constexpr double silence = 1;               ///< s without a reading: nothing is known of what was between
 constexpr double input_late = 1.5;          ///< usual steps without an input: another one may have acted
+constexpr double own_input_memory = 500;    ///< readings
+constexpr double own_input_usual = 0.8;     ///< share of readings with an input of their own: one without lost it
 
 const char* words(std::size_t direction) {
     constexpr const char* all[watch_directions] = {
@@ -84,6 +86,17 @@ struct Watch::Parts {
         }
         input_time.push_back(t);
         input_value.push_back(u);
+    }
+
+    /// True where the reading at `time` has no input of its own while nearly all have one: its field was not read.
+    bool input_is_lost(double time) {
+        if (input_time.empty() || !(usual_step > 0)) {
+            return false;
+        }
+        const auto next = std::lower_bound(input_time.begin(), input_time.end(), time - 0.5 * usual_step);
+        const bool own = next != input_time.end() && *next < time + 0.5 * usual_step;
+        own_input += ((own ? 1 : 0) - own_input) / own_input_memory;
+        return !own && own_input > own_input_usual;
     }
 
     /// Rows of the log are lost, and with them what a controller commanded: it went the way from the last to the next
@@ -236,8 +249,11 @@ struct Watch::Parts {
             if (!(dt > 0)) {
                 return {};
             }
-            if (usual_step > 0 && dt > input_late * usual_step && dt < silence) {
+            const bool late = usual_step > 0 && dt > input_late * usual_step;
+            if (dt < silence && (late || input_is_lost(steps.back().time))) {
                 bridge_lost_inputs(steps.back().time, step);
+            }
+            if (dt < silence && late) {
                 fill(step);
             }
             follow_step(usual_step, dt);
@@ -345,6 +361,7 @@ struct Watch::Parts {
 
     std::vector<double> input_time, input_value, raw_time, raw_gap;
     double largest_change = 0;  ///< N, of the input from one to the next, lately
+    double own_input = 0;       ///< share of the readings that have an input of their own, lately
     std::deque<WatchStep> steps;
     std::size_t count = 0, count_in_step = 0, passed_over = 0, backwards = 0;
     double last_time = 0, step_begin = 0, sum_time = 0, sum_gap = 0, gaps = 0, usual_step = 0;

@@ -33,12 +33,20 @@ bool has_rows(std::string_view text) {
     return std::any_of(lines.begin(), lines.end(), is_row);
 }
 
-/// The line with its fields that are infinite or no number at all ("nan") left empty.
-std::string without_non_finite(const std::string& line) {
+/// The line with its fields that are infinite or no number at all ("nan") left empty; with `text` also those that hold
+/// something else ("-", half a number), but not within quotes, where a comma parts no fields, nor where no number is
+/// left.
+std::string numbers_alone(const std::string& line, bool text) {
+    text = text && line.find('"') == std::string::npos;
     std::string out;
+    std::size_t numbers = 0;
     for (const std::string_view cell : core::split(line, ',')) {
         const auto value = core::parse_number(core::trimmed(cell));
-        out += value && !std::isfinite(*value) ? "," : std::string(cell) + ",";
+        out += (value ? std::isfinite(*value) : !text) ? std::string(cell) + "," : ",";
+        numbers += value && std::isfinite(*value) ? 1 : 0;
+    }
+    if (text && numbers == 0) {
+        return line;
     }
     out.pop_back();
     return line.ends_with('\n') && !out.ends_with('\n') ? out + "\n" : out;
@@ -75,8 +83,8 @@ public:
         if (bad_ + empty_ > said_) {
             problems_.push_back({core::Problem::Severity::warning,
                                  "in all " + core::counted(bad_, "line was", "lines were") +
-                                     " passed over, and numbers of " + core::counted(empty_, "line") +
-                                     " were not finite",
+                                     " passed over, and fields of " + core::counted(empty_, "line") +
+                                     " were no finite numbers",
                                  core::Place{name_, {}, {}, {}}});
         }
     }
@@ -106,12 +114,12 @@ private:
     /// A log that was read well for a while is not given up for a line: its writer was interrupted, or a sensor failed.
     void take_line(const std::string& line) {
         constexpr std::size_t well = 20, most_in_a_row = 100;
-        const std::string finite = without_non_finite(line);
+        const std::string finite = numbers_alone(line, good_ >= well);
         const std::int64_t before = lines_;
         try {
             take_rows(finite);
             if (finite != line && is_row(line) && ++empty_ == 1) {
-                say(before + 1, "a number that is not finite is taken as no reading, here and from here on");
+                say(before + 1, "a field that is no finite number is taken as no reading, here and from here on");
             }
         } catch (const core::InputError& error) {
             if (good_ < well || ++bad_in_a_row_ > most_in_a_row) {

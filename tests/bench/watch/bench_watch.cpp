@@ -45,9 +45,20 @@ const std::vector<Kind>& kinds() {
                                             rig.colour = 0.7;
                                             rig.disturbance = 0.002;
                                         }},
-                                       {"AR 0.9, 2 % of the rows lost", [](WatchedRig& rig) {
+                                       {"AR 0.9, 2 % of the rows lost",
+                                        [](WatchedRig& rig) {
                                             rig.colour = 0.9;
                                             rig.lost_rows = 0.02;
+                                        }},
+                                       {"white, 1 % wild, 0.5 % of the fields text",
+                                        [](WatchedRig& rig) {
+                                            rig.wild = 0.01;
+                                            rig.text = 0.005;
+                                        }},
+                                       {"AR 0.9, 1 % wild, 0.5 % of the fields text", [](WatchedRig& rig) {
+                                            rig.colour = 0.9;
+                                            rig.wild = 0.01;
+                                            rig.text = 0.005;
                                         }}};
     return all;
 }

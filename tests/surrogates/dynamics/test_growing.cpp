@@ -129,6 +129,8 @@ TEST(CsvStream, GoesOnBehindALineThatIsBrokenOrNotFinite) {
                 : i == 31 ? "31, 130 31, 131, 1\n"  // and began in the middle
                 : i == 40 ? "40, inf, 1\n"
                 : i == 41 ? "nan, 41, 1\n"
+                : i == 50 ? "50, no echo, 1\n"
+                : i == 51 ? "51, 151, -\n"
                           : std::to_string(i) + ", " + std::to_string(100 + i) + ", 1\n";
     }
     Pieces whole(text, 1, 1 << 20);
