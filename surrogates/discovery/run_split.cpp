@@ -53,6 +53,9 @@ RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::s
     }
     split.held_out = std::to_string(held) + " of " + std::to_string(count) +
                      " runs, drawn before anything was fitted (same controller)";
+    for (std::size_t i = 0; i < split.test.size(); ++i) {
+        split.held_out += (i == 0 ? ": " : ", ") + data.runs[run_of[split.test[i]]].name;
+    }
     if (held == 0) {
         split.test = split.train;
         split.held_out =
@@ -64,6 +67,19 @@ RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::s
                                   core::Place{data.folder.string(), {}, {}, {}}});
     }
     return split;
+}
+
+dynamics::Measurements held_out_data(const RunSplit& split, const dynamics::Measurements& data,
+                                     const std::vector<std::size_t>& run_of) {
+    if (split.beside) {
+        return *split.beside;
+    }
+    dynamics::Measurements held = data;
+    held.runs.clear();
+    for (const std::size_t i : split.test) {
+        held.runs.push_back(data.runs[run_of[i]]);
+    }
+    return held;
 }
 
 }  // namespace underbody::discovery

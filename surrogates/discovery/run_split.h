@@ -22,4 +22,8 @@ struct RunSplit {
 /// drawn by `seed`; with fewer than three the same runs, which is a warning. `run_of` is the run of each record.
 RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::size_t>& run_of, std::uint64_t seed);
 
+/// What is held out, as measurements: those of the split's test, or the data set beside.
+dynamics::Measurements held_out_data(const RunSplit& split, const dynamics::Measurements& data,
+                                     const std::vector<std::size_t>& run_of);
+
 }  // namespace underbody::discovery

@@ -20,35 +20,32 @@ void HeaveLoop::warn(const std::string& text) {
         {core::Problem::Severity::warning, text, core::Place{data_.folder.string(), {}, {}, {}}});
 }
 
+/// By predict(), so that the error is that of the command, of the model as declared and as written.
 void HeaveLoop::measure_error() {
-    const HeaveExperiment& test = held_out_runs();
-    const auto estimate = [&](const WindowSquares& windows) {
-        const BlockSquares sums = windows.by_record(test_.size());
-        return error_by_groups(sums.square, sums.count, options_.seed);
-    };
-    Answer before = answer_of({}, declared_noise_);
-    if (as_logged_) {
-        // the declared model with the log taken at its word
-        HeaveExperiment logged(model_, *as_logged_, test_, data_.declared_noise("gap"),
-                               data_.declared_noise("heave_velocity"));
-        logged.set_hold(experiment_->hold());
-        for (std::size_t i = 0; i < horizons().size(); ++i) {
-            before.windows[i] = window_errors(logged, {}, declared_noise_, horizons()[i]);
+    double last = 0;
+    for (const double horizon : horizons()) {
+        const PredictedWindows before = predicted_windows(model_, test_data_, horizon, "gap", progress_);
+        const PredictedWindows after = predicted_windows(result_.model, test_data_, horizon, "gap", progress_);
+        if (before.horizon == last || before.windows.record.empty() || after.windows.record.empty()) {
+            continue;  // no run is as long
         }
-    }
-    const Answer after = uses_.empty() ? answer_of({}, declared_noise_) : answer_of(uses_, after_noise_);
-    for (std::size_t i = 0; i < horizons().size(); ++i) {
+        last = before.horizon;
+        const auto estimate = [&](const PredictedWindows& one) {
+            const BlockSquares sums = one.windows.by_record(test_data_.runs.size());
+            return error_by_groups(sums.square, sums.count, options_.seed);
+        };
         ErrorChange change;
         change.channel = std::string("gap");
         change.unit = std::string("m");
-        change.horizon = horizons()[i];
+        change.horizon = before.horizon;
         change.noise = std::hypot(null_noise_.gap, null_noise_.slow);
-        change.before = estimate(before.windows[i]);
-        change.after = estimate(after.windows[i]);
+        change.before = estimate(before);
+        change.after = estimate(after);
         if (std::isfinite(change.before.rmse) && std::isfinite(change.after.rmse)) {
             result_.error.push_back(change);
         }
     }
+    const HeaveExperiment& test = held_out_runs();
     result_.consequence.estimator_before = estimator_error(test, {}, declared_noise_, uses_, after_noise_);
     result_.consequence.estimator_after = uses_.empty()
                                               ? result_.consequence.estimator_before

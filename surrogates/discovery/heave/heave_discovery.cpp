@@ -61,6 +61,8 @@ void HeaveLoop::split() {
         run_of.push_back(record.run);
     }
     RunSplit split = split_runs(data_, run_of, options_.seed);
+    test_data_ = held_out_data(split, data_, run_of);
+    test_data_.motion = "heave";
     train_ = std::move(split.train);
     test_ = std::move(split.test);
     if (split.beside) {
@@ -434,7 +436,6 @@ void HeaveLoop::check_input() {
         experiment_->set_hold(hold);
         return;
     }
-    as_logged_ = test_records_ ? *test_records_ : records_;
     change_input(-early, factor);
     records_read_.input_advance += early;
     records_read_.input_factor *= factor;

@@ -7,8 +7,43 @@
 #include "core/units.h"
 #include "surrogates/discovery/consequence.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::discovery {
+
+PredictedWindows predicted_windows(const dynamics::Model& model, const dynamics::Measurements& data, double horizon,
+                                   const std::string& channel, core::Progress& progress) {
+    PredictedWindows out;
+    dynamics::PredictOptions options;
+    options.horizon = horizon;
+    dynamics::Prediction prediction;
+    try {
+        prediction = dynamics::predict(model, data, options, progress);
+    } catch (const core::InputError&) {
+        return out;  // no run is long enough, or the motion has no end: there is no error over this horizon
+    }
+    out.horizon = prediction.horizon;
+    const std::vector<std::string>& run = prediction.table.text("run");
+    const std::vector<double>& window = prediction.table.numbers("window");
+    const std::vector<double>& read = prediction.table.numbers(channel);
+    const std::vector<double>& predicted = prediction.table.numbers(channel + "_predicted");
+    WindowSquares& to = out.windows;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        const bool next_run = i > 0 && (run[i] != run[i - 1] || window[i] < window[i - 1]);
+        if (i == 0 || next_run || window[i] != window[i - 1]) {
+            to.record.push_back(i == 0 ? 0 : to.record.back() + (next_run ? 1 : 0));
+            to.square.push_back(0);
+            to.count.push_back(0);
+        }
+        const double error = read[i] - predicted[i];
+        if (std::isfinite(error)) {
+            to.square.back() += error * error;
+            to.count.back() += 1;
+            to.errors.push_back(error);
+        }
+    }
+    return out;
+}
 
 WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                             const HeaveNoise& fitted_noise, double horizon) {

@@ -22,8 +22,17 @@ struct WindowSquares {
     [[nodiscard]] BlockSquares blocks(std::size_t records, std::size_t wanted) const;
 };
 
+/// What predict() says of these runs, window by window: the error that is reported.
+struct PredictedWindows {
+    double horizon = 0;     ///< s, as asked for; shorter where no run is as long; 0: no run is long enough
+    WindowSquares windows;  ///< `record` is the run's place among those predicted
+};
+PredictedWindows predicted_windows(const dynamics::Model& model, const dynamics::Measurements& data, double horizon,
+                                   const std::string& channel, core::Progress& progress);
+
 /// Windows of `horizon` seconds one after the other, each from the filtered state at its start; measured readings (not
-/// averages) less prediction.
+/// averages) less prediction. Two hypotheses are compared by these, each with the noise that suits it; what a user sees
+/// is predicted_windows().
 WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                             const HeaveNoise& noise, double horizon);
 /// The same summed by record.

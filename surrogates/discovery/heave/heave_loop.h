@@ -141,7 +141,7 @@ private:
     Calibration calibration_;
     HeaveRecords records_;
     std::optional<HeaveRecords> test_records_;
-    std::optional<HeaveRecords> as_logged_;  ///< the held-out records before the input was found to be wrong and mended
+    dynamics::Measurements test_data_;  ///< the held-out runs as they were read
     std::vector<std::size_t> train_, test_;
     std::optional<HeaveExperiment> experiment_;
     std::optional<HeaveExperiment> held_out_;

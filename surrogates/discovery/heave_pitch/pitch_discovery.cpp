@@ -80,14 +80,8 @@ void PitchLoop::split() {
     const RunSplit split = split_runs(data_, run_of, options_.seed);
     result_.held_out = split.held_out;
     result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
-    test_data_ = split.beside ? *split.beside : data_;
+    test_data_ = held_out_data(split, data_, run_of);
     test_data_.motion = "heave_pitch";
-    if (!split.beside) {
-        test_data_.runs.clear();
-        for (const std::size_t i : split.test) {
-            test_data_.runs.push_back(data_.runs[records[i].run]);
-        }
-    }
     std::vector<PitchRecord> train;
     for (const std::size_t i : split.train) {
         train.push_back(std::move(records[i]));

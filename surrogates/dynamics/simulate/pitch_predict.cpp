@@ -83,6 +83,7 @@ Prediction predict_pitch_series(const Model& model, const Measurements& data, co
     Prediction out;
     out.time_series = true;
     out.motion = "heave_pitch";
+    out.horizon = options.horizon;
     out.records = model.records;
     const bool linear = model.records.input_between == RecordReading::Between::linear;
     out.input_between = linear ? "linear" : "held";

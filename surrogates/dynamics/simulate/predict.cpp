@@ -459,6 +459,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
     }
     Prediction out;
     out.time_series = true;
+    out.horizon = options.horizon;
     InputReading reading;
     const SeriesPrediction all = *predict_as_read(model, data, options, true, reading, progress);
     out.input_between = reading.between;
