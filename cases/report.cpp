@@ -7,6 +7,7 @@
 
 #include "cases/code_version.h"
 #include "cases/engine.h"
+#include "cases/excused.h"
 #include "cases/percent.h"
 #include "cases/report_tables.h"
 #include "core/counted.h"
@@ -431,12 +432,14 @@ private:
         }
         for (const auto& spec : engine_.study.verifications) {
             if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
+                const std::string* document = engine_.results.document("verify/" + spec.name);
+                const std::string excuse = document == nullptr ? "" : excused(nlohmann::json::parse(*document));
                 page_.paragraph("Our loads against the solver's own " + spec.name + " (" +
                                 spec.table.filename().string() + "): " + core::counted(check->values, "value") +
                                 " compared; beyond twice what the run itself swings by, the worst differs by " +
                                 percent_of(check->worst, "the force's size") + " (" + check->worst_case +
                                 "); allowed " + percent(check->tolerance) + ", beyond it " +
-                                std::to_string(check->failed) +
+                                std::to_string(check->failed) + excuse +
                                 ". The files hold node values; face values would agree to rounding.");
             }
         }

@@ -15,7 +15,9 @@
 #include "core/units.h"
 #include "postproc/field/field.h"
 #include "postproc/field/problems_json.h"
+#include "postproc/loads/declared.h"
 #include "postproc/loads/loads.h"
+#include "postproc/loads/loads_case.h"
 #include "postproc/loads/settled.h"
 
 namespace underbody::cases {
@@ -30,6 +32,11 @@ Key loads_key(const Study& study, const Case& entry) {
     key.add("reference", study.reference).add("speed", study.speed_of(entry).value_or(0));
     if (const auto own = entry.conditions.number("density")) {
         key.add("density", *own);
+    }
+    for (const char* declared : {"gap", "pitch"}) {  // held against what the file shows
+        if (const auto own = entry.conditions.number(declared)) {
+            key.add(declared, *own);
+        }
     }
     if (study.moments_about) {
         for (const double x : *study.moments_about) {
@@ -49,13 +56,15 @@ class LoadsKeys {
 public:
     explicit LoadsKeys(const Study& study) {
         using Units = std::vector<std::pair<std::string, std::string>>;
-        std::map<std::tuple<std::optional<double>, std::optional<double>, std::vector<std::string>, std::string, Units>,
-                 std::size_t>
+        using Number = std::optional<double>;
+        std::map<std::tuple<Number, Number, Number, Number, std::vector<std::string>, std::string, Units>, std::size_t>
             known;
         for (const auto& entry : study.cases) {
-            const auto [at, fresh] = known.try_emplace({study.speed_of(entry), entry.conditions.number("density"),
-                                                        entry.zones, entry.length_unit, entry.units},
-                                                       keys_.size());
+            const Conditions& own = entry.conditions;
+            const auto [at, fresh] =
+                known.try_emplace({study.speed_of(entry), own.number("density"), own.number("gap"), own.number("pitch"),
+                                   entry.zones, entry.length_unit, entry.units},
+                                  keys_.size());
             if (fresh) {
                 keys_.push_back(loads_key(study, entry));
             }
@@ -129,7 +138,13 @@ Value compute_loads(Engine& engine, const Case& entry) {
     postproc::ReadOptions reading = read_options(entry);
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
-    const postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
+    postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
+    if (const auto gap = entry.conditions.number("gap")) {
+        const auto fault = postproc::gap_fault(field, result, *gap, entry.conditions.number("pitch").value_or(0));
+        if (fault) {
+            result.problems.push_back(*fault);
+        }
+    }
     core::Problems problems = findings(engine, field, result);
     core::Problems notes;
     const postproc::Settled settled =
@@ -165,6 +180,34 @@ Value compute_loads(Engine& engine, const Case& entry) {
                                     {"drag_pressure", result.named_pressure.drag_force},
                                     {"drag_viscous", result.named_viscous.drag_force}};
     return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(columns, settled, problems)};
+}
+
+/// Copies of one file under several names: a warning with the last of each.
+void warn_of_copies(const Study& study, std::vector<CaseLoads>& all) {
+    std::vector<postproc::ConditionedLoads> cases;
+    std::vector<std::size_t> place;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].values.empty()) {
+            continue;
+        }
+        const Conditions& conditions = study.cases[i].conditions;
+        postproc::ConditionedLoads one{all[i].name,
+                                       conditions.texts,
+                                       {all[i].value("lift_force"), all[i].value("drag_force"),
+                                        all[i].value("side_force"), all[i].value("lift_pressure")}};
+        for (const auto& [name, value] : conditions.numbers) {
+            if (!postproc::is_result(name)) {
+                one.conditions.emplace_back(name, core::format_number(value));
+            }
+        }
+        cases.push_back(std::move(one));
+        place.push_back(i);
+    }
+    for (const auto& [problem, last] : postproc::same_loads(cases)) {
+        CaseLoads& loads = all[place[last]];
+        loads.warnings.push_back(problem);
+        loads.warnings.back().place.file = loads.file;
+    }
 }
 
 }  // namespace
@@ -280,6 +323,7 @@ void find_loads(Engine& engine) {
             }
         },
         engine.progress);
+    warn_of_copies(engine.study, all);
     // Steps came from many threads: give them the order of the cases.
     auto& steps = engine.results.steps;
     std::stable_sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),

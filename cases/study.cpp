@@ -20,6 +20,7 @@
 #include "core/units.h"
 #include "geometry/cases/flow_domain.h"
 #include "postproc/importers/importer.h"
+#include "postproc/loads/loads.h"
 #include "postproc/loads/mirror_plane.h"
 
 namespace underbody::cases {
@@ -357,21 +358,19 @@ void check_symmetry(const Study& study, const TomlTable& frame) {
     if (study.symmetry.empty()) {
         return;
     }
+    postproc::MirrorPlane plane;
     try {
-        (void)postproc::mirror_plane_from(study.symmetry);
+        plane = postproc::mirror_plane_from(study.symmetry);
     } catch (const core::Error& error) {
         throw core::InputError("range", error.message(), frame.place("symmetry"),
                                "its normal axis, with its place if that is not 0: \"y\", or \"y=0.1\"");
     }
-    for (const auto& [axis, name, load] : {std::tuple(study.up, "up", "lift"), {study.forward, "forward", "drag"}}) {
-        if (study.symmetry.front() == axis.back()) {
-            const std::string side(1, static_cast<char>('x' + 'y' + 'z' - study.up.back() - study.forward.back()));
-            throw core::InputError("range",
-                                   "a symmetry plane across '" + std::string(1, axis.back()) + "' mirrors the " + name +
-                                       " axis: every " + load + " would be zero",
-                                   frame.place("symmetry"),
-                                   "the plane of a half model lies along the vehicle: symmetry = \"" + side + "\"");
-        }
+    try {
+        postproc::check_mirror_lies_along(plane, postproc::axis_from(study.forward), postproc::axis_from(study.up));
+    } catch (const core::Error& error) {
+        const std::string side(1, static_cast<char>('x' + 'y' + 'z' - study.up.back() - study.forward.back()));
+        throw core::InputError("range", error.message(), frame.place("symmetry"),
+                               "the plane of a half model lies along the vehicle: symmetry = \"" + side + "\"");
     }
 }
 

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads/body_zones.h"
+#include "postproc/loads/declared.h"
 #include "postproc/loads/fluid_side.h"
 #include "postproc/loads/loads_reference_point.h"
 #include "postproc/loads/mirror_plane.h"
@@ -95,6 +96,9 @@ private:
             }
         }
         axes_ = vehicle_axes(options_.forward, up);
+        if (field_.dimension == 3) {  // a plane case has its lift in its plane, and may be half a section
+            check_mirror_lies_along(plane_, axes_.forward, axes_.up);
+        }
         if (revolved_ && std::abs(axes_.forward[0]) < 1 - 1e-6) {
             throw core::UsageError("usage", "an axisymmetric case has its axis along x: forward lies along it", {},
                                    "option 'forward +x' or option 'forward -x'");
@@ -534,6 +538,11 @@ private:
 
     void coefficients() {
         const LoadsReferences& given = options_.references;
+        const Vector body{extent_along(axes_.forward), extent_along(axes_.starboard), extent_along(axes_.up)};
+        constexpr double far_off = 10, far_off_some_zones = 100;  // zones that were named may be a part of the body
+        const core::Problems faults =
+            size_faults(given, body, options_.zones.empty() ? far_off : far_off_some_zones, place());
+        result_.problems.insert(result_.problems.end(), faults.begin(), faults.end());
         const auto density = given.density ? given.density : field_.density;
         if (!density || !given.speed || !(*given.speed > 0) || !(*density > 0)) {
             return;
@@ -542,8 +551,8 @@ private:
         c.density = *density;
         c.speed = *given.speed;
         c.length = result_.length;
-        c.width = given.width.value_or(extent_along(axes_.starboard));
-        c.height = given.height.value_or(extent_along(axes_.up));
+        c.width = given.width.value_or(body[1]);
+        c.height = given.height.value_or(body[2]);
         c.lengths_from = given.length && given.width && given.height   ? "given"
                          : given.length || given.width || given.height ? "given, others from the bounding box"
                                                                        : "bounding box";

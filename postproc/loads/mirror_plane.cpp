@@ -31,6 +31,29 @@ MirrorPlane mirror_plane_from(const std::string& text) {
     return plane;
 }
 
+void check_mirror_lies_along(const MirrorPlane& plane, const Vector& forward, const Vector& up) {
+    if (!plane.is_half()) {
+        return;
+    }
+    const auto normal = static_cast<std::size_t>(plane.axis);
+    const auto across = [&](const Vector& axis) { return std::abs(axis[normal]) > 0.5 * norm(axis); };
+    const bool lift = across(up);
+    if (!lift && !across(forward)) {
+        return;
+    }
+    const Vector starboard = cross(forward, up);
+    const auto side = std::max_element(starboard.begin(), starboard.end(),
+                                       [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+                      starboard.begin();
+    throw core::UsageError("range",
+                           std::string("a symmetry plane across '") + "xyz"[normal] + "' mirrors the " +
+                               (lift ? "up" : "forward") + " axis: every " + (lift ? "lift" : "drag") +
+                               " would be zero",
+                           {},
+                           std::string("the plane of a half model lies along the vehicle: option 'symmetry ") +
+                               "xyz"[side] + "', or other axes for option 'forward' and option 'up'");
+}
+
 namespace {
 
 struct Bounds {

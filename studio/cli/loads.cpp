@@ -16,6 +16,8 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "core/water.h"
+#include "postproc/loads/declared.h"
 #include "postproc/loads/loads_table.h"
 #include "postproc/loads/mesh_study.h"
 #include "postproc/loads/stated_loads.h"
@@ -444,8 +446,25 @@ postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const Con
     if (!options.references.density) {
         options.references.density = condition_of(file, "density");
     }
+    // Who gives a speed asks for coefficients; a condition of that name alone does not.
+    const bool fresh_water = !given.speed.empty() && !options.references.density && !field.density;
+    if (fresh_water) {
+        options.references.density = core::default_water_density;
+    }
     postproc::LoadsCase one{file.path, file.numbers, file.texts, postproc::loads(field, options, shell.progress()), {},
                             {}};
+    if (fresh_water) {
+        one.loads.problems.push_back({core::Problem::Severity::warning,
+                                      "no density is given: coefficients are for " +
+                                          core::format_number(core::default_water_density) +
+                                          " kg/m^3, fresh water at 20 degC (--density)",
+                                      {}});
+    }
+    if (const auto gap = condition_of(file, "gap")) {
+        if (const auto fault = postproc::gap_fault(field, one.loads, *gap, condition_of(file, "pitch").value_or(0))) {
+            one.loads.problems.push_back(*fault);
+        }
+    }
     std::erase_if(one.numbers, [](const auto& entry) {
         return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z" ||
                entry.first == "reference_length";
@@ -462,6 +481,23 @@ void show_studies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
                 shell.info(one.file + ": " + name + ": " + study.text);
             }
         }
+    }
+}
+
+/// Copies of one file under several names.
+void show_copies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
+    std::vector<postproc::ConditionedLoads> all;
+    for (const auto& one : cases) {
+        const postproc::NamedLoads& loads = one.loads.named;
+        all.push_back({one.file, one.texts, {loads.lift_force, loads.drag_force, loads.side_force, one.loads.area}});
+        for (const auto& [name, value] : one.numbers) {
+            if (!postproc::is_result(name)) {
+                all.back().conditions.emplace_back(name, core::format_number(value));
+            }
+        }
+    }
+    for (const auto& [problem, last] : postproc::same_loads(all)) {
+        shell.show_warning(problem.message);
     }
 }
 
@@ -538,6 +574,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     const int verdict =
         given.check.empty() ? static_cast<int>(done) : check(shell, cases, option_value("--check", given.check, "1"));
+    show_copies(shell, cases);
     core::Problems notes;
     if (given.mean) {
         cases = postproc::means_in_time(cases, notes);
@@ -602,7 +639,8 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_option("--reference-pressure", o->reference_pressure, "taken from all pressures (\"101325 Pa\")");
     command->add_option(
         "--density", o->density,
-        "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name)");
+        "for coefficients, and for files that hold p/rho (default: the file's, or the condition of that name; with "
+        "--speed else 998 kg/m^3)");
     command->add_option("--speed", o->speed, "for coefficients (default: the condition of that name)");
     command->add_option("--length", o->length, "for coefficients (default: of the bounding box)");
     command->add_option("--width", o->width, "for coefficients");

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cases/excused.h"
 #include "cases/percent.h"
 #include "core/counted.h"
 #include "core/own_files.h"
@@ -224,7 +225,8 @@ int verify(Shell& shell, const StudyArguments& arguments) {
         failed += check->failed;
         shell.print(spec.name + ": " + core::counted(check->values, "value") + " compared, worst " +
                     cases::percent_of(check->worst, "the force's size") + " (" + check->worst_case + "), allowed " +
-                    cases::percent(check->tolerance) + ", " + std::to_string(check->failed) + " beyond it");
+                    cases::percent(check->tolerance) + ", " + std::to_string(check->failed) + " beyond it" +
+                    cases::excused(json[spec.name]));
     }
     if (shell.json) {
         shell.print_json(json);

@@ -72,14 +72,38 @@ TEST(Loads, OfTheShearOnAHalfModelAreThoseOfTheWhole) {
 }
 
 TEST(Loads, OfAWholeBodyAreNotDoubled) {
+    LoadsOptions options = about({0, 0, 0}, "z");
+    options.up = axis_from("+y");  // the plane lies along the vehicle
     try {
-        (void)loads(box(false, false), about({0, 0, 0}, "z"));
+        (void)loads(box(false, false), options);
         ADD_FAILURE() << "a closed box passed for half of one";
     } catch (const core::InputError& error) {
         EXPECT_THAT(error.what(),
                     testing::AllOf(HasSubstr("closes without a mirror image"), HasSubstr("option 'symmetry z=0'")));
     }
-    EXPECT_NO_THROW((void)loads(box(false, false), about({0, 0, 0}, "z=-1")));
+    options.symmetry = "z=-1";
+    EXPECT_NO_THROW((void)loads(box(false, false), options));
+}
+
+TEST(Loads, OfAHalfModelAcrossTheUpOrForwardAxisAreRefused) {
+    const auto p = [](const Vector& x) { return 100 + 10 * x[2]; };
+    const Field half = field_of({ellipsoid(12, {0.1, 0.08, 0.06}, p, true, false, "hull")});
+    const auto refused = [&](const char* forward, const char* up) {
+        LoadsOptions options = about({0, 0, 0}, "y");
+        options.forward = axis_from(forward);
+        options.up = axis_from(up);
+        try {
+            (void)loads(half, options);
+        } catch (const core::UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refused("+x", "-z"), "");
+    EXPECT_THAT(refused("+x", "+y"),
+                testing::AllOf(HasSubstr("every lift would be zero"), HasSubstr("option 'symmetry z'")));
+    EXPECT_THAT(refused("-y", "+z"),
+                testing::AllOf(HasSubstr("every drag would be zero"), HasSubstr("option 'symmetry x'")));
 }
 
 TEST(Loads, OfAPlaneCaseArePerMetreDepth) {

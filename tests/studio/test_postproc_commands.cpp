@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/table.h"
+#include "tests/support/small_study.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -219,6 +220,34 @@ TEST_F(PostprocCommands, LoadsGiveOneResultOrATable) {
     EXPECT_EQ(run_json({"loads", "--manifest", "list.csv"})["files"].size(), 1U);
     EXPECT_NEAR(run_json({"loads", "a-h5.csv", "--manifest", "list.csv"})["lift_force"].get<double>(), -1,
                 1e-12);  // a row without conditions
+}
+
+TEST_F(PostprocCommands, LoadsWithASpeedAloneAreOfFreshWaterAndSaySo) {
+    const json water = run_json({"loads", "a-h5.csv", "--speed", "0.5"});
+    EXPECT_EQ(water["coefficients"]["density"], 998);
+    EXPECT_THAT(water["problems"].dump(), testing::HasSubstr("no density is given: coefficients are for 998 kg/m^3"));
+    const json stated = run_json({"loads", "a-h5.csv", "--speed", "0.5", "--density", "1000"});
+    EXPECT_THAT(stated["problems"].dump(), testing::Not(testing::HasSubstr("no density")));
+}
+
+TEST_F(PostprocCommands, LoadsSayWhichGapsTheFilesContradict) {
+    for (const int gap : {2, 5}) {
+        core::write_file(folder_.path() / ("cube-h" + std::to_string(gap) + ".csv"),
+                         test::cube_field(1e-3 * gap, 100.0 * gap));
+    }
+    core::write_file(folder_.path() / "cube-h7.csv", test::cube_field(5e-3, 500));
+    const auto metres = run({"loads", "cube-h{gap:m}.csv"});
+    EXPECT_EQ(metres.exit_code, 0);
+    for (const std::string& stream : {metres.output, metres.errors}) {
+        EXPECT_THAT(stream, testing::HasSubstr("the gap is declared as 2 m, but in the file the body"));
+        EXPECT_THAT(stream, testing::HasSubstr("is it in mm, and was read in m?"));
+    }
+    const json table = run_json({"loads", "cube-h{gap:mm}.csv"});
+    const std::string all = table.dump();
+    EXPECT_THAT(all, testing::HasSubstr("declared as 7 mm"));
+    EXPECT_THAT(all, testing::HasSubstr("'cube-h5.csv', 'cube-h7.csv' have the same loads to the last digit"));
+    EXPECT_THAT(all, testing::Not(testing::HasSubstr("declared as 5 mm")));
+    EXPECT_THAT(table["files"][2]["problems"].dump(), testing::HasSubstr("declared as 7 mm"));
 }
 
 TEST_F(PostprocCommands, LoadsAreAManifestAgain) {

@@ -38,6 +38,37 @@ protected:
     }
 };
 
+TEST_F(StudyCommand, WarnsOfGapsThatTheFilesContradictAndOfCopies) {
+    fs::copy_file(study / "fields/cube-h6.csv", study / "fields/cube-h9.csv");
+    const json copied = json::parse(run().output);
+    std::string all = copied.at("warnings").dump();
+    EXPECT_THAT(all, HasSubstr("the gap is declared as 9 mm, but in the file the body (centre of the base (zone "
+                               "'base')) lies 6 mm over"));
+    EXPECT_THAT(all, HasSubstr("have the same loads to the last digit although their conditions differ (gap)"));
+    EXPECT_THAT(all, testing::Not(HasSubstr("declared as 6 mm")));
+    fs::remove(study / "fields/cube-h9.csv");
+    EXPECT_TRUE(json::parse(run().output).at("warnings").empty());
+    std::string text = core::read_file(study / "study.toml");
+    text.replace(text.find("{gap:mm}"), 8, "{gap:m}");
+    core::write_file(study / "study.toml", text);
+    const ProgramRun metres = run_underbody({"study", "run", study.string(), "--no-pictures"});
+    EXPECT_THAT(metres.output, HasSubstr("declared as 1 m"));
+    EXPECT_THAT(metres.output, HasSubstr("is it in mm, and was read in m?"));
+}
+
+TEST_F(StudyCommand, VerifySaysWhatTheScatterOfTheRunExcuses) {
+    core::write_file(study / "forces.csv",
+                     "gap [mm], lift_force [N], lift_force_scatter [N], drag_force [N]\n1, 0.6, 0, 0\n2, 0.5, 0, 0\n"
+                     "3, 0.38, 0.02, 0\n4, 0.3, 0, 0\n");
+    const ProgramRun shown = run_underbody({"study", "verify", study.string()});
+    EXPECT_EQ(shown.exit_code, 0) << shown.errors;
+    EXPECT_THAT(shown.output, HasSubstr("0 beyond it; 1 more off by up to 5 % of the force's size, excused by what "
+                                        "their own run swings by"));
+    const json verified = json::parse(run_underbody({"study", "verify", study.string(), "--json"}).output).at("solver");
+    EXPECT_EQ(verified.at("excused"), 1);
+    EXPECT_NEAR(verified.at("excused_worst").get<double>(), 0.02 / 0.4, 1e-6);
+}
+
 TEST_F(StudyCommand, TurnsFieldsIntoLoadsTableEquilibriaMapExportAndReport) {
     const ProgramRun first = run();
     ASSERT_EQ(first.exit_code, 0) << first.errors;

@@ -1,0 +1,169 @@
+#include "postproc/loads/declared.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "core/text.h"
+#include "postproc/field/field.h"
+
+namespace underbody::postproc {
+
+namespace {
+
+using core::Problem;
+
+std::string shown_length(double metres) {
+    const bool small = std::abs(metres) < 1;
+    return core::format_number(small ? 1000 * metres : metres, 5) + (small ? " mm" : " m");
+}
+
+/// What to ask about a length that is `ratio` times another: which unit was likely taken for which. `slack`: how far
+/// off the ratio may be, as a factor.
+std::string likely_unit(double ratio, double slack) {
+    struct Mistake {
+        double factor;
+        const char *meant, *taken;
+    };
+    constexpr double inch = 25.4, feet = 3.28084;  // mm, of a metre
+    constexpr std::array mistakes = {Mistake{1000, "mm", "m"}, Mistake{100, "cm", "m"}, Mistake{10, "mm", "cm"},
+                                     Mistake{inch, "mm", "in"}, Mistake{feet, "ft", "m"}};
+    for (const auto& [factor, meant, taken] : mistakes) {
+        for (const bool larger : {true, false}) {
+            const double off = larger ? ratio / factor : ratio * factor;
+            if (off < slack && off > 1 / slack) {
+                return std::string("is it in ") + (larger ? meant : taken) + ", and was read in " +
+                       (larger ? taken : meant) + "?";
+            }
+        }
+    }
+    return "is the unit right, and the file the one that was meant?";
+}
+
+/// Half a unit of the last digit that a length shows, in the unit (m or mm) in which it is shorter.
+double rounding(double metres) {
+    double half = 0;
+    std::size_t shortest = 0;
+    for (const double unit : {1e-3, 1.0}) {
+        const std::string digits = core::format_number(metres / unit, 12);
+        if (digits.find('e') != std::string::npos || (shortest > 0 && digits.size() >= shortest)) {
+            continue;
+        }
+        const auto point = digits.find('.');
+        shortest = digits.size();
+        half = 0.5 * unit *
+               (point == std::string::npos ? 1 : std::pow(10.0, -static_cast<double>(digits.size() - point - 1)));
+    }
+    return half;
+}
+
+/// m, along `up`: the highest flat wall across it that lies under the point and is not summed; nothing without one.
+std::optional<double> ground_under(const Field& field, const LoadsResult& loads, double height) {
+    const auto axis =
+        static_cast<std::size_t>(std::max_element(loads.up.begin(), loads.up.end(),
+                                                  [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+                                 loads.up.begin());
+    std::optional<double> ground;
+    for (const Zone& zone : field.zones) {
+        const bool summed = std::any_of(loads.zones.begin(), loads.zones.end(),
+                                        [&](const ZoneLoads& one) { return one.name == zone.name; });
+        if (summed || zone.kind != ZoneKind::wall || !zone.surface || zone.surface->GetNumberOfCells() == 0) {
+            continue;
+        }
+        std::array<double, 6> b{};
+        zone.surface->GetBounds(b.data());
+        const double size = std::hypot(b[1] - b[0], b[3] - b[2], b[5] - b[4]);
+        const double level = loads.up[axis] * b[2 * axis];
+        if (b[2 * axis + 1] - b[2 * axis] <= 1e-6 * size && level < height && level > ground.value_or(-HUGE_VAL)) {
+            ground = level;
+        }
+    }
+    return ground;
+}
+
+}  // namespace
+
+std::optional<Problem> gap_fault(const Field& field, const LoadsResult& loads, double gap, double pitch) {
+    if (loads.dimension != 3 || loads.reference_from == "given" || !std::isfinite(gap)) {
+        return {};
+    }
+    const double height = dot(loads.reference, loads.up);
+    const auto ground = ground_under(field, loads, height);
+    const double found = height - ground.value_or(0);
+    if (!(found > 1e-6 * loads.length)) {
+        return {};
+    }
+    const double allowed =
+        0.05 * found + rounding(gap) + (std::isfinite(pitch) ? 0.1 * loads.length * std::abs(std::sin(pitch)) : 0);
+    if (std::abs(gap - found) <= allowed) {
+        return {};
+    }
+    return Problem{Problem::Severity::warning,
+                   "the gap is declared as " + shown_length(gap) + ", but in the file the body (" +
+                       loads.reference_from + ") lies " + shown_length(found) + " over " +
+                       (ground ? "the ground" : "the plane 0, the ground of such files") + ": " +
+                       likely_unit(gap / found, 1.2),
+                   {loads.file, {}, {}, {}}};
+}
+
+core::Problems size_faults(const LoadsReferences& given, const Vector& body, double limit, const core::Place& place) {
+    const std::array<std::pair<const char*, std::optional<double>>, 3> sizes = {
+        {{"length", given.length}, {"width", given.width}, {"height", given.height}}};
+    core::Problems faults;
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+        const auto& [name, value] = sizes[k];
+        if (!value || !(body[k] > 0) || !(*value > 0)) {
+            continue;
+        }
+        const double ratio = *value / body[k];
+        if (ratio > limit || ratio < 1 / limit) {
+            faults.push_back({Problem::Severity::warning,
+                              std::string("the ") + name + " of reference is " + shown_length(*value) +
+                                  ", that of the body in the file " + shown_length(body[k]) + ": " +
+                                  likely_unit(ratio, 2) + " Coefficients rest on it",
+                              place});
+        }
+    }
+    return faults;
+}
+
+std::vector<std::pair<Problem, std::size_t>> same_loads(const std::vector<ConditionedLoads>& cases) {
+    std::map<std::vector<double>, std::vector<std::size_t>> alike;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const auto& loads = cases[i].loads;
+        if (std::any_of(loads.begin(), loads.end(), [](double load) { return load != 0; }) &&
+            std::all_of(loads.begin(), loads.end(), [](double load) { return std::isfinite(load); })) {
+            alike[loads].push_back(i);
+        }
+    }
+    std::vector<std::pair<Problem, std::size_t>> found;
+    for (const auto& [loads, group] : alike) {
+        std::string differing;
+        for (const auto& [name, value] : cases[group.front()].conditions) {
+            const bool differs =
+                name != "time" && std::any_of(group.begin(), group.end(), [&](std::size_t i) {
+                    const auto& others = cases[i].conditions;
+                    return std::find(others.begin(), others.end(), std::pair(name, value)) == others.end();
+                });
+            if (differs) {
+                differing += (differing.empty() ? "" : ", ") + name;
+            }
+        }
+        if (differing.empty()) {
+            continue;
+        }
+        std::string names;
+        for (const std::size_t i : group) {
+            names += (names.empty() ? "'" : ", '") + cases[i].name + "'";
+        }
+        found.emplace_back(Problem{Problem::Severity::warning,
+                                   names + " have the same loads to the last digit although their conditions differ (" +
+                                       differing + "): is one file a copy of the other?",
+                                   {}},
+                           group.back());
+    }
+    return found;
+}
+
+}  // namespace underbody::postproc

@@ -1,0 +1,110 @@
+// What was declared of a case against what its file shows: gap, lengths, density, copies.
+#include <gmock/gmock.h>
+
+#include "postproc/loads/declared.h"
+#include "postproc/loads/loads.h"
+#include "tests/postproc/made_zones.h"
+
+namespace underbody::postproc {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A body of that length (m) whose base lies at `height`.
+LoadsResult body_at(double height, double length = 0.2) {
+    LoadsResult loads;
+    loads.file = "body.csv";
+    loads.reference = {0, 0, height};
+    loads.reference_from = "centre of the base (zone 'base')";
+    loads.up = {0, 0, 1};
+    loads.length = length;
+    return loads;
+}
+
+std::string said(const LoadsResult& loads, double gap, double pitch = 0, const Field& field = {}) {
+    const auto fault = gap_fault(field, loads, gap, pitch);
+    return fault ? fault->message : "";
+}
+
+TEST(DeclaredGap, IsHeldAgainstTheHeightOfTheBase) {
+    EXPECT_EQ(said(body_at(0.005), 0.005), "");
+    EXPECT_EQ(said(body_at(0.00511), 0.005), "");  // 2 %
+    EXPECT_EQ(said(body_at(0.0014), 0.001), "");   // rounded to whole millimetres
+    EXPECT_THAT(said(body_at(0.002), 2), AllOf(HasSubstr("declared as 2 m"), HasSubstr("lies 2 mm over"),
+                                               HasSubstr("is it in mm, and was read in m?")));
+    EXPECT_THAT(said(body_at(0.005), 0.0127), AllOf(HasSubstr("declared as 12.7 mm"), HasSubstr("is the unit right")));
+    EXPECT_THAT(said(body_at(0.005), 0.007), HasSubstr("lies 5 mm over"));
+    EXPECT_THAT(said(body_at(0.0508), 0.002), HasSubstr("is it in in, and was read in mm?"));
+}
+
+TEST(DeclaredGap, MayBeOfAnotherPointOfAPitchedBody) {
+    EXPECT_EQ(said(body_at(0.00466), 0.005, -0.0349), "");
+    EXPECT_THAT(said(body_at(0.00466), 0.0052), HasSubstr("declared as 5.2 mm"));
+    EXPECT_THAT(said(body_at(0.00466), 5, -0.0349), HasSubstr("was read in m"));
+}
+
+TEST(DeclaredGap, IsNotToldByAReferenceThatWasGivenOrABodyAtItsOwnOrigin) {
+    LoadsResult given = body_at(0.002);
+    given.reference_from = "given";
+    EXPECT_EQ(said(given, 2), "");
+    EXPECT_EQ(said(body_at(0), 0.005), "");
+    EXPECT_EQ(said(body_at(-0.05), 0.005), "");
+}
+
+TEST(DeclaredGap, IsCountedFromAGroundThatIsInTheFile) {
+    Field field = box(false, false);  // its base is a flat wall at z = 0
+    for (Zone& zone : field.zones) {
+        zone.kind = ZoneKind::wall;
+    }
+    LoadsResult loads = body_at(0.005);
+    EXPECT_EQ(said(loads, 0.005, 0, field), "");
+    EXPECT_THAT(said(loads, 5, 0, field), HasSubstr("over the ground: is it in mm"));
+}
+
+TEST(DeclaredLengths, FarFromThoseOfTheBodyAreToldWithTheLikelyUnit) {
+    const LoadsReferences millimetres{{}, {}, 203.2, 152, 145};
+    const auto faults = size_faults(millimetres, {0.203, 0.152, 0.0725}, 10, {"body.csv", {}, {}, {}});
+    ASSERT_EQ(faults.size(), 3U);
+    EXPECT_THAT(faults[0].message, AllOf(HasSubstr("length of reference is 203.2 m"), HasSubstr("in the file 203 mm"),
+                                         HasSubstr("is it in mm, and was read in m?")));
+    EXPECT_TRUE(size_faults({{}, {}, 0.4, 0.3, 0.145}, {0.203, 0.152, 0.0725}, 10, {}).empty());
+    EXPECT_TRUE(size_faults({{}, {}, 0.4, 0.3, 0.145}, {0, 0, 0}, 10, {}).empty());  // a plane case has no width
+}
+
+TEST(DeclaredLengths, AreHeldAgainstTheBodyByTheLoads) {
+    LoadsOptions options;
+    options.references.length = 2000;
+    options.references.speed = 0.5;
+    options.references.density = 998;
+    const auto messages = [](const LoadsResult& result) {
+        std::string all;
+        for (const auto& problem : result.problems) {
+            all += problem.message + "\n";
+        }
+        return all;
+    };
+    EXPECT_THAT(messages(loads(box(false, false), options)), HasSubstr("length of reference is 2000 m"));
+    options.references = {998, 0.5, 2, 1, 0.5};
+    EXPECT_THAT(messages(loads(box(false, false), options)), testing::Not(HasSubstr("of reference is")));
+}
+
+TEST(SameLoads, OfCasesWithOtherConditionsAreToldAsCopies) {
+    const std::vector<double> lift = {0.25, 0.6, 0, 0.08}, other = {0.2, 0.6, 0, 0.08}, nothing = {0, 0, 0, 0};
+    const auto found = same_loads({{"h5", {{"gap", "0.005"}, {"time", "1"}}, lift},
+                                   {"h6", {{"gap", "0.006"}}, other},
+                                   {"h7", {{"gap", "0.007"}, {"time", "2"}}, lift},
+                                   {"a", {{"gap", "1"}}, nothing},
+                                   {"b", {{"gap", "2"}}, nothing}});
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].first.message,
+              "'h5', 'h7' have the same loads to the last digit although their conditions differ (gap): is one file a "
+              "copy of the other?");
+    EXPECT_EQ(found[0].second, 2U);
+    // A run that stands still gives the same at every time; one file named twice alike is no fault of its conditions.
+    EXPECT_TRUE(same_loads({{"t1", {{"time", "1"}}, lift}, {"t2", {{"time", "2"}}, lift}}).empty());
+    EXPECT_TRUE(same_loads({{"a", {{"gap", "1"}}, lift}, {"b", {{"gap", "1"}}, lift}}).empty());
+}
+
+}  // namespace
+}  // namespace underbody::postproc
