@@ -81,8 +81,8 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     }
     text += missing ? "" : limits_text(found);
     for (const discovery::ErrorChange& change : found.error) {
-        text += "\nError of " + change.channel + horizon_text(change) +
-                " on held-out data: " + core::format_number(change.before.rmse, 3) +
+        text += "\nError of " + change.channel + horizon_text(change) + discovery::error_is_on(found) + ": " +
+                core::format_number(change.before.rmse, 3) +
                 (missing ? " -> " + core::format_number(change.after.rmse, 3) : "") + " " + change.unit + " (noise " +
                 core::format_number(change.noise, 3) + ")";
     }
@@ -272,7 +272,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         }
         const dynamics::Model model = dynamics::read_model(arguments->model);
         const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
-        const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+        std::vector<std::string> warnings = show_table_warnings(shell, model, data);
         discovery::DiscoverOptions options;
         options.horizon = option_value("--horizon", arguments->horizon, "s");
         options.seed = arguments->seed;
@@ -283,6 +283,11 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         }
         discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
         shell.show(found.problems);
+        for (const core::Problem& problem : found.problems) {
+            if (problem.severity != core::Problem::Severity::note) {
+                warnings.push_back(problem.message);
+            }
+        }
         std::string again = make_again(found, model, data, shell);
         again += export_again(found, model, *arguments, shell);
         discovery::write_discovery(found, model, data, arguments->out, renderer);

@@ -59,7 +59,7 @@ void add_facts(core::HtmlPage& page, const Discovery& d) {
     if (!d.error.empty()) {
         const ErrorChange& chief = d.error.front();
         facts.push_back({in_noise(chief.before, chief.noise) + " \u2192 " + in_noise(chief.after, chief.noise),
-                         "held-out error of " + chief.channel + " in units of its noise, before \u2192 after"});
+                         "error of " + chief.channel + error_is_on(d) + " in units of its noise, before \u2192 after"});
     }
     if (d.placebo.twins > 0) {
         facts.push_back({std::to_string(d.placebo.alarms) + " of " + std::to_string(d.placebo.twins),

@@ -58,8 +58,7 @@ RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::s
     }
     if (held == 0) {
         split.test = split.train;
-        split.held_out =
-            "the same runs that were fitted: there are too few to hold any out, so the error after is too good";
+        split.held_out = fitted_runs;
         split.problems.push_back({core::Problem::Severity::warning,
                                   "with " + std::to_string(count) +
                                       " run(s) nothing can be held out: the error is that of the fit, and what "

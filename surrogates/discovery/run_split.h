@@ -11,6 +11,12 @@
 
 namespace underbody::discovery {
 
+/// What is said of where an error is from (`held_out`), where nothing could be held out of the fit.
+inline constexpr const char* fitted_runs =
+    "the same runs that were fitted: there are too few to hold any out, so the error after is too good";
+inline constexpr const char* fitted_readings =
+    "the readings that were fitted, because fewer than eight set points leave none to hold out: too good by nature";
+
 struct RunSplit {
     std::vector<std::size_t> train, test;          ///< of the records; of `beside` where that is there
     std::optional<dynamics::Measurements> beside;  ///< the data set in the folder held-out beside the data

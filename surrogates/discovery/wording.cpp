@@ -6,6 +6,7 @@
 #include "core/counted.h"
 #include "core/text.h"
 #include "surrogates/discovery/hypothesis.h"
+#include "surrogates/discovery/run_split.h"
 
 namespace underbody::discovery {
 
@@ -177,6 +178,10 @@ std::string worse_elsewhere(const Discovery& discovery) {
                         : text + (longer ? ": predictions as long as that are no better with what was found." : ".");
 }
 
+bool is_fitted(const Discovery& discovery) {
+    return discovery.held_out == fitted_runs || discovery.held_out == fitted_readings;
+}
+
 std::string unknown_sentence(const Discovery& discovery, const std::string& error) {
     if (discovery.by_run) {
         return "Something real is missing that is not the same in all runs: " + by_run_text(*discovery.by_run) +
@@ -189,16 +194,22 @@ std::string unknown_sentence(const Discovery& discovery, const std::string& erro
            list_of(discovery.depends_on) + "." +
            (corrected   ? " A smooth correction was put into the model." + error
             : over_time ? " The model is as declared: what one record did over time says nothing of the next."
-                        : " The model is as declared: no correction lowers the held-out error beyond its interval.");
+                        : " The model is as declared: no correction lowers the error" + error_is_on(discovery) +
+                              " beyond its interval.");
 }
 
 }  // namespace
+
+std::string error_is_on(const Discovery& discovery) {
+    return is_fitted(discovery) ? " on the data it was fitted to" : " on held-out data";
+}
 
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || (discovery.verdict == "none" && discovery.mended.empty())
             ? ""
-            : " On held-out data the error of " + discovery.error.front().channel +
+            : (is_fitted(discovery) ? " On the data it was fitted to" : " On held-out data") +
+                  std::string(" the error of ") + discovery.error.front().channel +
                   (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
                                                                                                    : " falls from ") +
                   error_text(discovery.error.front()) + "." + worse_elsewhere(discovery);

@@ -18,6 +18,9 @@ std::string verdict_names(const Discovery& discovery);
 /// The verdict for people, one or two sentences.
 std::string verdict_sentence(const Discovery& discovery);
 
+/// " on held-out data"; " on the data it was fitted to" where nothing could be held out.
+std::string error_is_on(const Discovery& discovery);
+
 /// What the model as found leaves unexplained of the held-out data, as a sentence that begins with a space; empty where
 /// it is noise.
 std::string rest_sentence(const Discovery& discovery);

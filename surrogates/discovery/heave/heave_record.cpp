@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/model/repeated_runs.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
@@ -300,21 +301,14 @@ VelocityScale velocity_scale(const HeaveRecord& record, double gap_noise) {
     return by_gap > 0 ? VelocityScale{cross / by_gap, std::sqrt(by_velocity / by_gap)} : VelocityScale{};
 }
 
-bool same_numbers(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
-}
-
-/// The same run twice would make everything look more certain than it is.
+/// Of measurements that were read none is left; those made in memory may have some.
 void drop_copies(HeaveRecords& result, const dynamics::Measurements& data) {
     for (std::size_t a = 0; a < result.records.size(); ++a) {
         for (std::size_t b = result.records.size(); b-- > a + 1;) {
-            if (same_numbers(result.records[a].gap, result.records[b].gap) &&
-                same_numbers(result.records[a].raw_input, result.records[b].raw_input)) {
-                remark(result.problems,
-                       result.records[b].name + " is the same as " + result.records[a].name +
-                           ", reading by reading: used once",
-                       data.runs[result.records[b].run].table.source);
+            const dynamics::MeasuredRun &first = data.runs[result.records[a].run],
+                                        &later = data.runs[result.records[b].run];
+            if (dynamics::same_readings(first, later)) {
+                result.problems.push_back(dynamics::used_once(later, first));
                 result.records.erase(result.records.begin() + static_cast<std::ptrdiff_t>(b));
             }
         }

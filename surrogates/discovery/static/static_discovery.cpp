@@ -8,6 +8,7 @@
 #include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "surrogates/discovery/run_split.h"
 #include "surrogates/discovery/static/static_checks.h"
 #include "surrogates/discovery/static/static_loop.h"
 #include "surrogates/discovery/statistics.h"
@@ -92,8 +93,7 @@ void StaticLoop::split() {
         }
         result_.held_out =
             test_.empty()
-                ? "the readings that were fitted, because fewer than eight set points leave none to hold out: too good "
-                  "by nature"
+                ? fitted_readings
                 : "a quarter of the set points, drawn before anything was fitted (same rig, same order of measurement)";
     } else if (!named) {
         train_.resize(all.size());

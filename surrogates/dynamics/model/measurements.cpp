@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/logs/log_channels.h"
 #include "surrogates/dynamics/model/file_formats.h"
 #include "surrogates/dynamics/model/measurement_setup.h"
+#include "surrogates/dynamics/model/repeated_runs.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 
 namespace underbody::dynamics {
@@ -351,6 +352,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         data.runs.push_back(std::move(run));
     }
     gather(data.problems);
+    drop_repeated_runs(data);
     root.finish();
     if (data.runs.empty()) {
         throw core::InputError("missing", "a data set without a run", core::Place{file.string(), {}, {}, {}},

@@ -6,6 +6,7 @@
 #include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "surrogates/dynamics/simulate/horizon.h"
 
 namespace underbody::dynamics {
 
@@ -21,7 +22,7 @@ std::array<double, pitch_states> pitch_noise(const Measurements& data, const Mea
 std::vector<PitchRunPrediction> predict_pitch_runs(const Model& model, const Measurements& data,
                                                    const PredictOptions& options, core::Progress& progress) {
     std::vector<PitchRunPrediction> all(data.runs.size());
-    const double past = options.past > 0 ? options.past : std::min(options.horizon, 2.0);
+    const double past = time_before(options);
     core::parallel_for(
         data.runs.size(),
         [&](std::size_t r) {
@@ -91,10 +92,9 @@ Prediction predict_pitch_series(const Model& model, const Measurements& data, co
     const std::vector<PitchRunPrediction> all = predict_pitch_runs(model, data, options, progress);
     check_motion(all, model, data, out);
     if (out.windows == 0) {
-        throw core::InputError(
-            "range", "no run is long enough for a prediction over " + core::format_number(options.horizon) + " s", {},
-            "a shorter horizon");
+        throw no_prediction(data, options);
     }
+    remark_long_horizon(data, options, out);
     std::vector<std::string> names;
     std::vector<double> number, time;
     std::array<std::vector<double>, pitch_states> measured, predicted;

@@ -16,6 +16,7 @@
 #include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
+#include "surrogates/dynamics/simulate/horizon.h"
 #include "surrogates/dynamics/simulate/pitch_predict.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
@@ -160,7 +161,7 @@ public:
             return {};
         }
         const std::span<const double> t(time.data(), last);
-        const double past = options_.past > 0 ? options_.past : std::min(options_.horizon, 2.0);
+        const double past = time_before(options_);
         std::vector<Row> out;
         std::size_t window = 0;
         // Beyond this nothing is known of what acted.
@@ -411,15 +412,6 @@ void check_bounds(const SeriesPrediction& all, const Model& model, const Measure
     }
 }
 
-double longest_run(const Measurements& data) {
-    double longest = 0;
-    for (const MeasuredRun& run : data.runs) {
-        const std::vector<double>& time = run.table.numbers("time");
-        longest = std::max(longest, time.back() - time.front());
-    }
-    return longest;
-}
-
 /// What of the runs is not judged by, and why.
 void remark_unused(const SeriesPrediction& all, const Model& model, const Measurements& data, Prediction& out) {
     const GapRange tables = lift_gap_range(model);
@@ -503,10 +495,9 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
         return out;
     }
     if (names.empty()) {
-        throw core::InputError(
-            "range", "no run is long enough for a prediction over " + core::format_number(options.horizon) + " s", {},
-            "a shorter horizon");
+        throw no_prediction(data, options);
     }
+    remark_long_horizon(data, options, out);
     out.table.add_text("run", names);
     out.table.add_numbers("window", "1", window);
     out.table.add_numbers("time", "s", time);

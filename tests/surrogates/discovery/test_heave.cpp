@@ -474,6 +474,9 @@ TEST(HeaveInput, OneRunIsUsedAndItsLimitsAreSaid) {
     const Discovery found = found_on_changed([](dynamics::Measurements&) {}, 1, 0.004);
     EXPECT_TRUE(says(found.problems, "held out"));
     EXPECT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_NE(found.sentence.find("On the data it was fitted to the error of gap falls from"), std::string::npos)
+        << found.sentence;
+    EXPECT_EQ(found.sentence.find("held-out"), std::string::npos) << found.sentence;
 }
 
 TEST(HeaveInput, TheSameRunTwiceIsUsedOnce) {
