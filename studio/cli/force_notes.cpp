@@ -36,6 +36,11 @@ core::Problems together(core::Problems first, const core::Problems& more) {
     return first;
 }
 
+core::Problems outside_or_in_vain(const dynamics::Model& model, const dynamics::Conditions& held) {
+    return together(dynamics::held_outside(model, held.over(model.conditions)),
+                    together(dynamics::held_in_vain(model, held), dynamics::gaps_of_another_size(model)));
+}
+
 }  // namespace
 
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
@@ -49,13 +54,13 @@ void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Con
         shell.print(note.message + "\n");
         json["held_at_reference"].push_back(note.message);
     }
-    json["warnings"] = said(shell, together(dynamics::held_outside(model, held.over(model.conditions)),
+    json["warnings"] = said(shell, together(outside_or_in_vain(model, held),
                                             together(dynamics::effects_without_motion(model), table_remarks(model))));
 }
 
 std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
                                              const dynamics::Conditions& held) {
-    return said(shell, together(dynamics::held_outside(model, held.over(model.conditions)), table_remarks(model)));
+    return said(shell, together(outside_or_in_vain(model, held), table_remarks(model)));
 }
 
 std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,

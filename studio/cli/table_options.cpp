@@ -230,13 +230,15 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
                 ")";
     }
     warnings_ = dynamics::held_outside(model, held);
+    keep(dynamics::held_in_vain(model, held_of(where)), warnings_);
+    keep(dynamics::gaps_of_another_size(model), warnings_);
     if (text != said_) {
         said_ = text;
         if (!text.empty()) {
             print_held ? shell.print(text) : shell.info(text);
         }
-        shell.show(warnings_);
     }
+    shell.show(warnings_);
     for (const auto& table : found.tables) {
         if (remarks) {
             tell(shell, table.remarks(), warnings_);

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
+
 namespace underbody::studio {
 
 namespace {
@@ -64,6 +66,36 @@ std::string nearest(const std::string& word, const std::vector<std::string>& nam
     return found;
 }
 
+/// "Value -3 not in range 0.000000 to 1797..." where only one end is meant, in words; others as they are.
+std::string range_in_words(const std::string& complaint) {
+    constexpr std::string_view words = " not in range ";
+    const auto at = complaint.find(words);
+    const auto to = complaint.find(" to ", at == std::string::npos ? at : at + words.size());
+    if (to == std::string::npos) {
+        return complaint;
+    }
+    const auto lower = core::parse_number(complaint.substr(at + words.size(), to - at - words.size()));
+    const auto upper = core::parse_number(complaint.substr(to + 4));
+    constexpr double endless = 1e300;
+    if (!lower || !upper || *upper < endless) {
+        return complaint;
+    }
+    const auto value = core::parse_number(complaint.substr(0, at).substr(complaint.rfind(' ', at - 1) + 1));
+    const bool at_the_end = value && *value >= *lower;  // the least of all positive numbers is written as 0
+    return complaint.substr(0, at) + (at_the_end ? " is not above " : " is below ") + core::format_number(*lower);
+}
+
+/// "format is required" with what the option is.
+std::string with_meaning(const CLI::App& command, const std::string& complaint) {
+    constexpr std::string_view words = " is required";
+    if (!complaint.ends_with(words)) {
+        return complaint;
+    }
+    const auto* option = command.get_option_no_throw(complaint.substr(0, complaint.size() - words.size()));
+    return option == nullptr || option->get_description().empty() ? complaint
+                                                                  : complaint + ": " + option->get_description();
+}
+
 }  // namespace
 
 core::UsageError usage_error(const CLI::App& app, const CLI::ParseError& complaint) {
@@ -88,7 +120,7 @@ core::UsageError usage_error(const CLI::App& app, const CLI::ParseError& complai
                 {},
                 near.empty() ? help : "did you mean '" + command + " " + near + "'?"};
     }
-    return {"usage", complaint.what(), {}, help};
+    return {"usage", range_in_words(with_meaning(*chain.back(), complaint.what())), {}, help};
 }
 
 }  // namespace underbody::studio

@@ -63,6 +63,18 @@ TEST(CommandLine, AnswersAMistypedOptionWithTheNearest) {
                 HasSubstr("'underbody loads' has no option --colour"));
 }
 
+TEST(CommandLine, SaysRangesAndMissingWordsPlainly) {
+    const auto threads = run_underbody({"list", "quantities", "--threads", "-3"});
+    EXPECT_EQ(threads.exit_code, 2);
+    EXPECT_THAT(threads.errors, HasSubstr("--threads: Value -3 is below 0"));
+    EXPECT_THAT(threads.errors, testing::Not(HasSubstr("1797")));
+    EXPECT_THAT(run_underbody({"watch", "m.toml", "--per-day", "0"}).errors,
+                HasSubstr("--per-day: Value 0 is not above 0"));
+    const auto keys = run_underbody({"list", "keys"});
+    EXPECT_EQ(keys.exit_code, 2);
+    EXPECT_THAT(keys.errors, HasSubstr("format is required: shape, study, model or dataset"));
+}
+
 TEST(CommandLine, AnswersAMistypedCommandWithTheNearest) {
     EXPECT_THAT(run_underbody({"lods", "a.csv"}).errors, HasSubstr("did you mean 'underbody loads'?"));
     EXPECT_THAT(run_underbody({"--quiet", "simulat", "model.toml"}).errors,

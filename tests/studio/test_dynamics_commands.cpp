@@ -207,6 +207,9 @@ TEST_F(DynamicsCommands, WrongModelsAreRefusedWithWhatToDo) {
     EXPECT_NE(errors("mass = 2.2\nlength = 203.2\nwidth = 152\n", "").find("mm"), std::string::npos);
     EXPECT_NE(errors("mass = 2200\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n", "").find("displaces"),
               std::string::npos);
+    EXPECT_NE(errors("mass = 2.2\nadded_mass_heave = \"1754 kg\"\nlength = \"203.2 mm\"\nwidth = \"152 mm\"\n", "")
+                  .find("vehicle.added_mass_heave = 1754 kg, but a hull of that size displaces"),
+              std::string::npos);
     EXPECT_NE(
         errors(
             "mass = 2.2\nroll_inertia = 0.001\npitch_inertia = 0.002\nyaw_inertia = 0.002\ninertia_product_xz = 0.01\n",
@@ -246,6 +249,78 @@ TEST_F(DynamicsCommands, PredictSaysBesideTheErrorWhichColumnsItDidNotUse) {
     const std::string said = "the column 'vz' is not used: if it is heave_velocity, name it 'heave_velocity [m/s]'";
     EXPECT_NE(text.output.find(said), std::string::npos) << text.output;
     EXPECT_EQ(json({"predict", "model.toml", "--data", "runs"})["remarks"].at(0), said);
+}
+
+TEST_F(DynamicsCommands, PredictSaysHowTheHorizonLiesToTheRuns) {
+    std::string run = "time [s], gap [m]\n";
+    for (int i = 0; i < 400; ++i) {
+        run += std::to_string(0.02 * i) + ", " + std::to_string(0.002 + 1e-5 * (i * 7 % 11)) + "\n";
+    }
+    core::write_file(folder_.path() / "runs/a.csv", run);
+    core::write_file(folder_.path() / "runs/dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    const auto remarks = [&](const std::string& horizon) {
+        return json({"predict", "model.toml", "--data", "runs", "--horizon", horizon})["remarks"].dump();
+    };
+    EXPECT_EQ(remarks("2s").find("horizon"), std::string::npos);
+    EXPECT_NE(remarks("100s").find("every run is shorter than the horizon of 100 s: a prediction ends with its run, "
+                                   "after 5.98 s at most"),
+              std::string::npos)
+        << remarks("100s");
+    const auto short_one =
+        run_underbody({"predict", "model.toml", "--data", "runs", "--horizon", "0.02s"}, folder_.path());
+    EXPECT_EQ(short_one.exit_code, 3);
+    EXPECT_NE(short_one.errors.find("too short for these runs: their samples lie 0.02 s apart"), std::string::npos)
+        << short_one.errors;
+    EXPECT_NE(short_one.errors.find("a longer horizon, 0.08 s or more"), std::string::npos) << short_one.errors;
+    EXPECT_EQ(
+        run_underbody({"predict", "model.toml", "--data", "runs", "--horizon", "0.08s"}, folder_.path()).exit_code, 0);
+}
+
+TEST_F(DynamicsCommands, PredictUsesARunThatStandsTwiceOnce) {
+    std::string run = "time [s], gap [m]\n";
+    for (int i = 0; i < 400; ++i) {
+        run += std::to_string(0.02 * i) + ", " + std::to_string(0.002 + 1e-5 * (i * 7 % 11)) + "\n";
+    }
+    core::write_file(folder_.path() / "runs/a.csv", run);
+    core::write_file(folder_.path() / "runs/dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    const nlohmann::json once = json({"predict", "model.toml", "--data", "runs"});
+    core::write_file(folder_.path() / "runs/b.csv", run);
+    core::write_file(folder_.path() / "runs/dataset.toml",
+                     "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
+    const nlohmann::json twice = json({"predict", "model.toml", "--data", "runs"});
+    EXPECT_EQ(twice["channels"], once["channels"]);
+    EXPECT_NE(twice["remarks"].dump().find("b is the same as a, reading by reading: used once"), std::string::npos)
+        << twice["remarks"];
+}
+
+TEST_F(DynamicsCommands, ConditionsThatNothingKnowsAreTold) {
+    const std::string said = "nothing in the model depends on jet_voltage: 12 V changes no force";
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", "model.toml", "--from", "gap=10mm", "--for", "1s", "--conditions", "jet_voltage=12V"},
+        {"region", "model.toml", "--grid", "4x4", "--for", "1s", "--conditions", "jet_voltage=12V"},
+        {"table", "at", "model.toml", "gap=10mm", "--where", "jet_voltage=12V"}};
+    for (const auto& command : commands) {
+        const auto run = run_underbody(command, folder_.path());
+        EXPECT_EQ(run.exit_code, 0) << run.errors;
+        EXPECT_NE(run.output.find(said), std::string::npos) << command[0] << run.output;
+        EXPECT_NE(json(command)["warnings"].dump().find(said), std::string::npos) << command[0];
+    }
+}
+
+TEST_F(DynamicsCommands, GapsOfAHundredLengthsAreTold) {
+    core::write_file(folder_.path() / "far.csv", "gap [m], lift_force [N]\n1, 0.1\n10, 0.02\n100, -0.03\n");
+    core::write_file(folder_.path() / "far.toml",
+                     "[vehicle]\nmass = \"2.2 kg\"\nlength = \"203.2 mm\"\n[drag.heave]\nlinear = 0.3\n"
+                     "[[force]]\nquantity = \"lift_force\"\ntable = \"far.csv\"\n");
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", "far.toml", "--from", "gap=20m", "--for", "1s"},
+        {"linear", "far.toml", "--at", "gap=20m"},
+        {"table", "equilibria", "far.toml"}};
+    for (const auto& command : commands) {
+        const nlohmann::json document = json(command);
+        EXPECT_NE(document["warnings"].dump().find("are mostly more than 10 lengths of the vehicle"), std::string::npos)
+            << command[0] << document["warnings"];
+    }
 }
 
 TEST_F(DynamicsCommands, RegionRefusesWhatItWouldPassOver) {

@@ -30,6 +30,11 @@ TEST(ExportCommand, WritesEveryFormatAndLeavesFilesOfOthersAlone) {
     EXPECT_THAT(run.errors, HasSubstr("no force table that Underbody wrote"));
     EXPECT_EQ(core::read_file(folder.path() / "mine.h"), "int precious;\n");
     EXPECT_EQ(run_underbody({"export", "lift.csv", "--format", "d", "--out", "x"}, folder.path()).exit_code, 2);
+    std::filesystem::create_directory(folder.path() / "inside");
+    const auto into = run_underbody({"export", "lift.csv", "--format", "c", "--out", "inside"}, folder.path());
+    EXPECT_EQ(into.exit_code, 3);
+    EXPECT_THAT(into.errors, HasSubstr("name a file in it, such as inside/lift"));
+    EXPECT_THAT(into.errors, testing::Not(HasSubstr("--force")));
 }
 
 TEST(ExportCommand, TakesAModelWithWhatWasFoundInIt) {

@@ -190,6 +190,15 @@ void check_model(Model& model, const core::TomlTable& root) {
                                    vehicle.place("mass"),
                                    std::string(mass_hint) + "; or the hull's size has another unit");
         }
+        constexpr double most_added =
+            300;  // times the displaced water: a flat base a hundredth of its length up has 10
+        if (v.added_mass_heave > most_added * displaced) {
+            throw core::InputError("range",
+                                   "vehicle.added_mass_heave = " + number(v.added_mass_heave) +
+                                       " kg, but a hull of that size displaces about " + number(displaced) + " kg",
+                                   vehicle.place("added_mass_heave"),
+                                   "give it with its unit: added_mass_heave = \"1.754 kg\"");
+        }
     }
     if (std::abs(v.net_weight) > v.mass * model.environment.gravity * weight_rounding && v.net_weight > 0) {
         throw core::InputError("range",

@@ -6,6 +6,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "surrogates/dynamics/model/effect.h"
 
 namespace underbody::dynamics {
 
@@ -68,6 +69,89 @@ core::Problems held_at_reference(const Model& model, const Conditions& held, con
                                      " " + core::format_number(scale.reference, 6) + " " + channel_unit(scale.channel),
                                  {model.name, {}, {}, {}}});
             }
+        }
+    }
+    return found;
+}
+
+namespace {
+
+bool scales_with(const Model& model, Channel channel) {
+    return std::any_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) {
+        return std::any_of(source.scales.begin(), source.scales.end(),
+                           [&](const ForceScale& scale) { return scale.channel == channel; });
+    });
+}
+
+/// By a force table, a scale, an effect, or, of the speed, what acts along the way.
+bool is_used(const Model& model, Channel channel) {
+    const std::string name = channel_name(channel);
+    const bool of_a_force = std::any_of(model.forces.begin(), model.forces.end(), [&](const ForceSource& source) {
+        return std::find(source.axes.begin(), source.axes.end(), channel) != source.axes.end();
+    });
+    const bool of_an_effect = std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse& use) {
+        const auto& names = effect(use.name).info().depends_on;
+        return std::find(names.begin(), names.end(), name) != names.end() ||
+               (use.table && std::any_of(use.table->axes().begin(), use.table->axes().end(),
+                                         [&](const tables::TableAxis& axis) { return axis.name == name; }));
+    });
+    const auto resists = [](const DragLaw& law) {
+        return law.linear != 0 || law.quadratic != 0 || law.kind == DragLaw::Kind::mixed;
+    };
+    const bool along_the_way =
+        channel == Channel::speed &&
+        (!model.jets.empty() || resists(model.drag_surge) || model.coupling.kind == Coupling::Kind::sheltered ||
+         std::any_of(model.forces.begin(), model.forces.end(),
+                     [](const ForceSource& source) { return source.quantity != "lift_force"; }));
+    return of_a_force || of_an_effect || along_the_way || scales_with(model, channel);
+}
+
+}  // namespace
+
+core::Problems held_in_vain(const Model& model, const Conditions& given) {
+    core::Problems found;
+    const auto warn = [&](const std::string& text) {
+        found.push_back({core::Problem::Severity::warning, text, {model.name, {}, {}, {}}});
+    };
+    for (const Channel channel : {Channel::speed, Channel::jet_voltage, Channel::jet_flow, Channel::temperature,
+                                  Channel::depth, Channel::approach_direction}) {
+        if (given.has(channel) && !is_used(model, channel)) {
+            warn(std::string("nothing in the model depends on ") + channel_name(channel) + ": " +
+                 core::format_number(given[channel], 6) + " " + channel_unit(channel) +
+                 " changes no force; leave it out, or give a force an axis or a scale of that name");
+        }
+    }
+    if (given.get(Channel::speed, 0) < 0 && scales_with(model, Channel::speed)) {
+        warn("the speed is " + core::format_number(given[Channel::speed], 6) +
+             " m/s, astern: forces that scale with the speed are those of the same speed ahead, nothing was measured "
+             "astern");
+    }
+    return found;
+}
+
+core::Problems gaps_of_another_size(const Model& model) {
+    constexpr double far = 10;  // lengths, where no ground is felt
+    core::Problems found;
+    for (const ForceSource& source : model.forces) {
+        if (std::find(source.axes.begin(), source.axes.end(), Channel::gap) == source.axes.end()) {
+            continue;
+        }
+        const core::Column* column = source.table.points().find(channel_name(Channel::gap));
+        if (column == nullptr || column->numbers.empty()) {
+            continue;
+        }
+        std::vector<double> gaps = column->numbers;
+        const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+        std::nth_element(gaps.begin(), middle, gaps.end());
+        if (*middle > far * model.vehicle.length) {
+            const auto [low, high] = std::minmax_element(gaps.begin(), gaps.end());
+            found.push_back({core::Problem::Severity::warning,
+                             "the gaps of the " + source.quantity + " table " + source.table_file + ", " +
+                                 core::format_number(*low, 4) + " to " + core::format_number(*high, 4) +
+                                 " m, are mostly more than " + core::format_number(far) + " lengths of the vehicle (" +
+                                 core::format_number(model.vehicle.length, 4) +
+                                 " m): are they millimetres? then the column's name is gap [mm]",
+                             {source.table_path.string(), {}, {}, {}}});
         }
     }
     return found;

@@ -25,6 +25,14 @@ core::Problems held_outside(const Model& model, const Conditions& held);
 /// Not of `moving` channels, which the motion or a signal gives; `held` as above.
 core::Problems held_at_reference(const Model& model, const Conditions& held, const std::vector<Channel>& moving);
 
+/// A warning for every condition given for a motion that nothing of the model depends on (jet_voltage where no force
+/// scales with it), and for a speed astern, at which a force that scales with speed is that of the same speed ahead.
+core::Problems held_in_vain(const Model& model, const Conditions& given);
+
+/// A warning for every force table most of whose points lie at gaps of more than ten lengths of the vehicle:
+/// millimetres that were taken for metres.
+core::Problems gaps_of_another_size(const Model& model);
+
 /// The same of what was measured: a warning for every axis of a force table beyond which measured values lie (columns,
 /// conditions of the runs, else the model's), with the range that they have there and in how many rows. Not of the gap
 /// of a time series: predictions, estimates and discovery say themselves what becomes of its readings outside.

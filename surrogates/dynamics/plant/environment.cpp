@@ -95,7 +95,8 @@ core::Problems motion_remarks(const Model& model, const Conditions& held) {
     core::Problems remarks = model.remarks;
     const Conditions all = held.over(model.conditions);
     for (const core::Problems& more :
-         {effects_without_motion(model), held_outside(model, all), held_before_start(model, all)}) {
+         {effects_without_motion(model), held_outside(model, all), held_before_start(model, all),
+          held_in_vain(model, held), gaps_of_another_size(model)}) {
         remarks.insert(remarks.end(), more.begin(), more.end());
     }
     return remarks;

@@ -64,7 +64,8 @@ void check_path(const std::filesystem::path& path, const ForceTable& table, bool
         throw core::UsageError("path", "an export needs a path to write to");
     }
     if (std::filesystem::is_directory(path, ignored)) {
-        throw core::InputError("exists", "this is a folder, an export is a file", {path.string(), {}, {}, {}});
+        throw core::InputError("path", "this is a folder, an export is a file", {path.string(), {}, {}, {}},
+                               "name a file in it, such as " + (path / "lift").string() + " with the format's ending");
     }
     if (!std::filesystem::exists(path, ignored)) {
         return;

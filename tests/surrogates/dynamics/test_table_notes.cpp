@@ -75,5 +75,62 @@ TEST_F(TableNotes, WarnOfAConditionOutsideTheTableInMapAndMotion) {
     EXPECT_TRUE(warned(simulate(m, 0.003, 0, inputs, {}).remarks));
 }
 
+TEST_F(TableNotes, SayWhichConditionsChangeNothing) {
+    const Model m = model();
+    Conditions given;
+    given[Channel::speed] = 0.5;
+    EXPECT_TRUE(held_in_vain(m, given).empty());
+    given[Channel::jet_voltage] = 12;
+    const auto found = held_in_vain(m, given);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NE(found[0].message.find("nothing in the model depends on jet_voltage: 12 V changes no force"),
+              std::string::npos)
+        << found[0].message;
+    const auto told = [](const core::Problems& remarks) {
+        return std::any_of(remarks.begin(), remarks.end(), [](const auto& remark) {
+            return remark.message.find("nothing in the model depends on jet_voltage") != std::string::npos;
+        });
+    };
+    InputSignals inputs;
+    inputs.held = given;
+    EXPECT_TRUE(told(simulate(m, 0.003, 0, inputs, {}).remarks));
+    Conditions warm;
+    warm[Channel::temperature] = 290;
+    EXPECT_EQ(held_in_vain(m, warm).size(), 1U);
+    EXPECT_TRUE(held_in_vain(m.with_effect(make_use("temperature", {})), warm).empty());
+}
+
+TEST_F(TableNotes, SayThatAScaleKnowsNoSpeedAstern) {
+    core::write_file(folder.path() / "scaled.csv", "gap [mm], lift_force [N]\n1, 3\n2, 2\n3, 1.5\n4, 1\n");
+    const Model m = read_model_text(
+        "[vehicle]\nmass = \"2 kg\"\n[[force]]\nquantity = \"lift_force\"\ntable = \"scaled.csv\"\n"
+        "[force.scale.speed]\nreference = \"0.5 m/s\"\n",
+        "scaled.toml", folder.path());
+    Conditions given;
+    given[Channel::speed] = 0.5;
+    EXPECT_TRUE(held_in_vain(m, given).empty());
+    given[Channel::speed] = -0.5;
+    const auto found = held_in_vain(m, given);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NE(found[0].message.find("the speed is -0.5 m/s, astern"), std::string::npos) << found[0].message;
+}
+
+TEST_F(TableNotes, SayThatGapsOfAHundredLengthsWereMillimetres) {
+    const std::string start =
+        "[vehicle]\nmass = \"2 kg\"\nlength = \"203.2 mm\"\n[[force]]\nquantity = "
+        "\"lift_force\"\ntable = \"gaps.csv\"\n";
+    for (const auto& [unit, faults] : {std::pair<std::string, std::size_t>{"m", 1}, {"mm", 0}}) {
+        core::write_file(folder.path() / "gaps.csv",
+                         "gap [" + unit + "], lift_force [N]\n1, 3\n2, 2\n5, 1.5\n20, 1\n100, 0.5\n");
+        const auto found = gaps_of_another_size(read_model_text(start, "far.toml", folder.path()));
+        ASSERT_EQ(found.size(), faults) << unit;
+        if (faults > 0) {
+            EXPECT_NE(found[0].message.find("1 to 100 m, are mostly more than 10 lengths of the vehicle (0.2032 m)"),
+                      std::string::npos)
+                << found[0].message;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace underbody::dynamics
