@@ -196,7 +196,7 @@ TEST_F(Warnings, OfViewsAndProbesStandWhereTheirNumbersAre) {
 TEST_F(Warnings, OfMapsAndOfGivenStartsStandInTheirTables) {
     write_files();
     core::write_file(folder.path() / "starts.csv", "gap [mm], heave_velocity [m/s]\n7, 0\n9, 0.001\n14, 0.2\n");
-    const std::string unsettled = "1 of the 8 points are of solutions that have not settled: row 2";
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
     const std::string beyond = "of the motions are at some time outside the range of a force table";
     const auto text =
         run_underbody({"region", "model.toml", "--starts", "starts.csv", "--escape", "30mm"}, folder.path());

@@ -5,7 +5,7 @@
 
 namespace underbody::dynamics {
 
-/// True where two runs of a time series have the same gap and the same input, reading by reading.
+/// True where two runs of a time series have the same gap, input and other columns that both have, reading by reading.
 bool same_readings(const MeasuredRun& a, const MeasuredRun& b);
 
 /// What is said of a run that is left out because it repeats another.

@@ -58,7 +58,7 @@ TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldV
         EXPECT_EQ(error.place().column, 3);
     }
     write("a.csv", "time [s], gap [mm], vz [mm/s], battery [V]\n0, 10, 1, 9\n0.02, 11, 2, 9\n0.04, 12, 3, 9\n");
-    write("b.csv", "time [s], gap [mm], vz [mm/s], note\n0, 10, 1, x\n0.02, 11, 2, y\n0.04, 12, 3, z\n");
+    write("b.csv", "time [s], gap [mm], vz [mm/s], note\n0, 10, 1, x\n0.02, 11, 2, y\n0.04, 13, 3, z\n");
     write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
     const Measurements data = read_measurements(folder_.path());
     ASSERT_EQ(data.problems.size(), 2U);
@@ -69,6 +69,16 @@ TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldV
     // With its right name beside it, the other column is just another.
     write("a.csv", "time [s], gap [mm], input_force [N], force_in [mN]\n0, 10, 1, 1\n0.02, 11, 2, 1\n0.04, 12, 3, 1\n");
     EXPECT_EQ(read_measurements(folder_.path()).problems.size(), 2U);
+}
+
+TEST_F(MeasurementFiles, UseARunThatStandsTwiceOnce) {
+    const std::string head = "time [s], gap [mm], pitch [deg]\n";
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
+    write("a.csv", head + "0, 10, 1\n0.02, 10, 2\n0.04, 10, 3\n");
+    write("b.csv", head + "0, 10, 1\n0.02, 10, 2\n0.04, 10, 3\n");
+    EXPECT_EQ(read_measurements(folder_.path()).runs.size(), 1U);
+    write("b.csv", head + "0, 10, 1\n0.02, 10, 2.5\n0.04, 10, 3\n");
+    EXPECT_EQ(read_measurements(folder_.path()).runs.size(), 2U) << "a gap that stands still under another pitch";
 }
 
 TEST_F(MeasurementFiles, SayWhereTimeRunsBackwards) {

@@ -18,7 +18,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path evie() { return test::source_folder() / "cases" / "evie"; }
+/// The shipped study without what a run of it left beside its files.
+fs::path evie() {
+    static const core::TemporaryFolder folder;
+    static const fs::path copy = [] {
+        const fs::path shipped = test::source_folder() / "cases" / "evie", own = folder.path() / "evie";
+        fs::create_directory(own);
+        for (const fs::directory_entry& entry : fs::directory_iterator(shipped)) {
+            if (entry.path().filename() != ".underbody") {
+                fs::copy(entry.path(), own / entry.path().filename(), fs::copy_options::recursive);
+            }
+        }
+        return own;
+    }();
+    return copy;
+}
 
 SessionPointer evie_session() {
     static const SessionPointer session = open_session(evie());
