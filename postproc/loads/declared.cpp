@@ -102,7 +102,9 @@ std::optional<Problem> gap_fault(const Field& field, const LoadsResult& loads, d
     return Problem{Problem::Severity::warning,
                    "the gap is declared as " + shown_length(gap) + ", but in the file the body (" +
                        loads.reference_from + ") lies " + shown_length(found) + " over " +
-                       (ground ? "the ground" : "the plane 0, the ground of such files") + ": " +
+                       (ground ? "the ground: "
+                               : "the plane 0, taken as the ground because the file shows none (where it lies "
+                                 "elsewhere, give the point of reference): ") +
                        likely_unit(gap / found, 1.2),
                    {loads.file, {}, {}, {}}};
 }
