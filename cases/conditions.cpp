@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 
 namespace underbody::cases {
@@ -41,7 +42,7 @@ std::string Conditions::shown_unit(const std::string& name) const {
             return own.written;
         }
     }
-    return name == "gap" ? "mm" : name == "pitch" ? "deg" : unit(name);
+    return std::string(core::told_unit_of(name, unit(name)));
 }
 
 std::optional<double> Conditions::number(const std::string& name) const {

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "surrogates/dynamics/theory/theory.h"
 
@@ -38,7 +39,7 @@ std::vector<Shown> condition_columns(const core::Table& loads) {
         if (column.is_text() && column.name != "case" && column.name != "settled") {
             columns.push_back({column.name, "", "", column.name});
         } else if (!column.is_text() && core::find_quantity(column.name) != nullptr && !measured) {
-            const std::string to = column.name == "gap" ? "mm" : column.name == "pitch" ? "deg" : column.unit;
+            const std::string to = std::string(core::told_unit_of(column.name, column.unit));
             columns.push_back({column.name, column.unit, to, column.name + (to == "1" ? "" : " (" + to + ")")});
         }
     }

@@ -10,6 +10,7 @@
 #include "cases/why.h"
 #include "core/table.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 
 namespace underbody::cases {
@@ -53,7 +54,7 @@ public:
         return count == 1 ? name : name + " " + std::to_string(count);
     }
     static std::string shown(double value, const std::string& unit, const std::string& told_in = "") {
-        const std::string as = !told_in.empty() ? told_in : unit == "m" ? "mm" : unit == "rad" ? "deg" : unit;
+        const std::string as = !told_in.empty() ? told_in : std::string(core::told_unit(unit));
         const bool pure = as.empty() || as == "1";
         return core::format_number(pure ? value : core::convert(value, unit, as), 6) + (pure ? "" : " " + as);
     }

@@ -6,6 +6,7 @@
 
 #include "core/counted.h"
 #include "core/table.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "geometry/cases/flow_domain.h"
 #include "geometry/water/added_mass.h"
@@ -47,7 +48,7 @@ std::vector<double> gaps_of(const AddedMassCommand& o) {
     }
     for (const double gap : gaps) {
         if (!(gap > 0)) {
-            throw core::UsageError("range", "a gap of " + rounded(gap) + " m", {}, "gaps are positive");
+            throw core::UsageError("range", "a gap of " + core::told(gap, "m"), {}, "gaps are positive");
         }
     }
     return gaps;

@@ -8,6 +8,7 @@
 #include "cases/percent.h"
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/study_parts.h"
 
@@ -48,9 +49,7 @@ std::string shown(double value, const std::string& unit, int digits = 4) {
     if (!std::isfinite(value)) {
         return "-";
     }
-    const std::string to = unit == "m" ? "mm" : unit == "rad" ? "deg" : unit;
-    return unit == "1" ? cases::percent(value, digits)
-                       : core::format_number(core::convert(value, unit, to), digits) + " " + to;
+    return unit == "1" ? cases::percent(value, digits) : core::told(value, unit, digits);
 }
 
 /// "0.5 N, 0.52 N, 0.02 ± 0.005 N (4 errors)"

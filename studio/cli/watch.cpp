@@ -10,6 +10,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/option_value.h"
@@ -214,7 +215,7 @@ private:
              {"block", watch_->block()},
              {"false_alarms_per_day", rate},
              {"rate_holds", stated}},
-            seconds(last_) + ": watching, noise of the gap " + core::format_number(watch_->noise(), 3) + " m" +
+            seconds(last_) + ": watching, noise of the gap " + core::told(watch_->noise(), "m", 3) +
                 (colour > 0 ? " (correlated over " + core::format_number(colour, 2) + " s)" : "") + ", judged every " +
                 core::format_number(watch_->block(), 2) + " s; " +
                 (stated ? "at most " + core::format_number(rate, 3) + (rate == 1 ? " false alarm" : " false alarms") +

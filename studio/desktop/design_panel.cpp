@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "geometry/body/variants.h"
 #include "studio/desktop/parameter_row.h"
@@ -26,13 +27,8 @@ namespace underbody::studio {
 
 namespace {
 
-std::string shown_unit(const std::string& unit) { return unit == "m" ? "mm" : unit == "rad" ? "deg" : unit; }
-
 /// As it stands in files and commands: "2 mm".
-std::string written(double value, const std::string& unit) {
-    const std::string shown = shown_unit(unit);
-    return core::format_number(core::convert(value, unit, shown), 12) + (shown == "1" ? "" : " " + shown);
-}
+std::string written(double value, const std::string& unit) { return core::told(value, unit, 12); }
 
 }  // namespace
 
@@ -185,7 +181,8 @@ void DesignPanel::make_rows() {
                 words_.emplace_back(word.name, box);
             }
         }
-        auto* row = new ParameterRow(qt(parameter.name), {}, parameter.unit, shown_unit(parameter.unit));
+        auto* row = new ParameterRow(qt(parameter.name), {}, parameter.unit,
+                                     QString::fromStdString(std::string(core::told_unit(parameter.unit))));
         parameter_column_->addWidget(row);
         rows_.emplace_back(parameter.name, row);
         connect_row(row, "set", parameter.name, parameter.unit);

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "core/table.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "tests/support/support.h"
 
@@ -192,6 +193,20 @@ TEST(Locale, NumbersAreReadAndWrittenAlikeUnderAGermanLocale) {
     EXPECT_DOUBLE_EQ(table.numbers("gap")[0], 0.0015);
     EXPECT_EQ(write_csv(table), "gap [mm], lift_force [N]\n1.5, 0.25\n");
     std::setlocale(LC_ALL, "C");
+}
+
+TEST(Told, LengthsInMillimetresAnglesInDegreesAllElseAsItIs) {
+    EXPECT_EQ(told(0.005, "m"), "5 mm");
+    EXPECT_EQ(told(-std::numbers::pi / 90, "rad"), "-2 deg");
+    EXPECT_EQ(told(0.4, "m/s"), "0.4 m/s");
+    EXPECT_EQ(told(3, "1"), "3");
+    EXPECT_EQ(told_range(0.001, 0.1, "m"), "1 to 100 mm");
+    EXPECT_EQ(told_range(1, 2, ""), "1 to 2");
+    EXPECT_EQ(told_condition("gap", 0.0123456, 4), "gap 12.35 mm");
+    EXPECT_EQ(told_condition("depth", 3), "depth 3 m");
+    EXPECT_EQ(told_condition("wheels", 3), "wheels 3");
+    EXPECT_EQ(told_unit_of("depth", "m"), "m");
+    EXPECT_EQ(told_unit_of("roll", "rad"), "deg");
 }
 
 }  // namespace

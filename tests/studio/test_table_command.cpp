@@ -126,7 +126,7 @@ TEST(TableCommand, TakesARangePolicyForEachAxis) {
     };
     const auto refused = at("gap=6mm,pitch=0", "gap=refuse,pitch=clamp");
     EXPECT_EQ(refused.exit_code, 3);
-    EXPECT_THAT(refused.output, HasSubstr("gap 0.006 m is outside the table, which covers 0.001 to 0.005 m"));
+    EXPECT_THAT(refused.output, HasSubstr("gap 6 mm is outside the table, which covers 1 to 5 mm"));
     const auto held = at("gap=5mm,pitch=3deg", "gap=refuse,pitch=clamp");
     ASSERT_EQ(held.exit_code, 0) << held.errors;
     EXPECT_NEAR(nlohmann::json::parse(held.output)["value"].get<double>(), 0.3, 1e-12);

@@ -10,6 +10,7 @@
 #include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
@@ -55,9 +56,8 @@ HeaveRegionSetup::HeaveRegionSetup(const Model& model, const RegionOptions& opti
     top = std::max(top, highest * (highest > 0 ? 1.0 : -1.0));
     escape_gap = std::isnan(options.escape_gap) ? std::max(top, contact_gap + least_room) : options.escape_gap;
     if (escape_gap <= contact_gap) {
-        throw core::InputError("range", "the escape gap " + core::format_number(escape_gap) +
-                                            " m is not above the contact gap " + core::format_number(contact_gap) +
-                                            " m");
+        throw core::InputError("range", "the escape gap " + core::told(escape_gap, "m") +
+                                            " is not above the contact gap " + core::told(contact_gap, "m"));
     }
     const double gap_size =
         gap_axis ? std::min(gap_axis->upper - gap_axis->lower, escape_gap - contact_gap) : escape_gap - contact_gap;
@@ -259,8 +259,8 @@ FoundEnds heave_ends_of_starts(const Model& model, const core::Table& starts, co
         }
         if (gap[i] < setup.contact_gap) {
             throw core::InputError("range",
-                                   "a start lies in the ground: gap " + core::format_number(gap[i]) + " m is below " +
-                                       core::format_number(setup.contact_gap) + " m",
+                                   "a start lies in the ground: gap " + core::told(gap[i], "m") + " is below " +
+                                       core::told(setup.contact_gap, "m"),
                                    starts.place(i, "gap"));
         }
     }

@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "core/no_limit.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/plant/environment.h"
 
@@ -329,14 +329,13 @@ void add_outside_remarks(StabilityRegion& region) {
 
 std::string table_range_text(double gap_lower, double gap_upper, double pitch_lower, double pitch_upper) {
     std::string range;
-    const auto add = [&](const char* name, double lower, double upper, double scale, const char* unit) {
+    const auto add = [&](const char* name, double lower, double upper, const char* unit) {
         if (core::is_limit(lower) || core::is_limit(upper)) {
-            range += std::string(range.empty() ? "" : "; ") + name + " " + core::format_number(scale * lower, 6) +
-                     " to " + core::format_number(scale * upper, 6) + unit;
+            range += std::string(range.empty() ? "" : "; ") + name + " " + core::told_range(lower, upper, unit);
         }
     };
-    add("gap", gap_lower, gap_upper, 1, " m");
-    add("pitch", pitch_lower, pitch_upper, 180 / std::numbers::pi, " deg");
+    add("gap", gap_lower, gap_upper, "m");
+    add("pitch", pitch_lower, pitch_upper, "rad");
     return range;
 }
 

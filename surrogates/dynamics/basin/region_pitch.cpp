@@ -5,6 +5,7 @@
 #include "core/no_limit.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/basin/region_pitch_ends.h"
 #include "surrogates/dynamics/simulate/feedback.h"
@@ -149,8 +150,7 @@ FoundEnds pitch_ends_of_starts(const Model& model, const core::Table& starts, co
         if (std::min(gaps[0], gaps[1]) < 0) {
             throw core::InputError("range",
                                    "a start lies in the ground: gaps of nose and tail edge " +
-                                       core::format_number(gaps[0], 4) + " m, " + core::format_number(gaps[1], 4) +
-                                       " m",
+                                       core::told(gaps[0], "m", 4) + ", " + core::told(gaps[1], "m", 4),
                                    starts.place(i, "gap"));
         }
     }

@@ -6,6 +6,7 @@
 
 #include "core/no_limit.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/plant/heave.h"
@@ -287,8 +288,8 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     }
     if (gap < plant.terms.contact_gap) {
         throw core::InputError("range",
-                               "the start lies in the ground: gap " + core::format_number(gap) +
-                                   " m is below the contact gap " + core::format_number(plant.terms.contact_gap) + " m",
+                               "the start lies in the ground: gap " + core::told(gap, "m") +
+                                   " is below the contact gap " + core::told(plant.terms.contact_gap, "m"),
                                {model.name, {}, {}, {}}, "start above it, or set [contact] gap in the model");
     }
     const std::unique_ptr<HeaveRun> run = inputs.signals.empty() ? nullptr : std::make_unique<HeaveRun>(plant, inputs);
@@ -297,8 +298,7 @@ Trajectory simulate(const Model& model, double gap, double heave_velocity, const
     const double t0 = inputs.time.empty() ? 0.0 : inputs.time.front();
     Flight(plant, run.get(), options, out).fly(gap, heave_velocity, t0, progress);
     remark_outside(out.remarks, out.outside,
-                   " (" + core::format_number(plant.terms.table_lower, 6) + " to " +
-                       core::format_number(plant.terms.table_upper, 6) + " m)");
+                   " (gap " + core::told_range(plant.terms.table_lower, plant.terms.table_upper, "m") + ")");
     if (run && !out.time.empty() && out.time.back() > inputs.time.back() + same_instant) {
         out.remarks.push_back(
             {core::Problem::Severity::warning,

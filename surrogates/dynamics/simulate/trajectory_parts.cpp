@@ -6,6 +6,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 
 namespace underbody::dynamics {
@@ -95,7 +96,7 @@ void refuse_start_in_ground(const std::array<double, 2>& gaps) {
     if (std::min(gaps[0], gaps[1]) < -start_depth) {
         throw core::InputError("range",
                                "the start lies in the ground: gaps of nose and tail edge " +
-                                   core::format_number(gaps[0], 4) + " m, " + core::format_number(gaps[1], 4) + " m",
+                                   core::told(gaps[0], "m", 4) + ", " + core::told(gaps[1], "m", 4),
                                {}, "start higher or flatter, or set [contact] gap in the model");
     }
 }

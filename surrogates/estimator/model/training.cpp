@@ -8,6 +8,7 @@
 #include "core/counted.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/told.h"
 
 namespace underbody::estimator {
 
@@ -184,8 +185,8 @@ void check(const SeparatedPlant& plant, const TrainingOptions& o) {
     }
     if (o.gap_lower < plant.contact_gap) {
         throw core::InputError(
-            "range", "the training region reaches below the contact gap " + std::to_string(plant.contact_gap) + " m",
-            {}, "start the gaps there or above");
+            "range", "the training region reaches below the contact gap " + core::told(plant.contact_gap, "m"), {},
+            "start the gaps there or above");
     }
     if (o.samples < 1 || o.samples > 4000000) {
         throw core::InputError("range", "between 1 and 4,000,000 samples, not " + std::to_string(o.samples));
@@ -337,8 +338,8 @@ Vector equilibrium_point(const SeparatedPlant& plant, const Layout& layout, doub
         return {row.begin(), row.begin() + static_cast<std::ptrdiff_t>(layout.inputs.size() + layout.states.size())};
     }
     throw core::InputError("missing",
-                           "the plant has no stable equilibrium between " + std::to_string(gap_lower) + " and " +
-                               std::to_string(gap_upper) + " m",
+                           "the plant has no stable equilibrium between " + core::told(gap_lower, "m") + " and " +
+                               core::told(gap_upper, "m"),
                            {}, "widen the region or take moments about the mean");
 }
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/no_limit.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "surrogates/tables/analysis/figures.h"
 
@@ -183,7 +184,7 @@ std::string text_of(const Collapse& c, std::size_t beyond, std::size_t all, bool
         return std::abs(a.worst) < std::abs(b.worst);
     });
     return text + ", worst at " +
-           (c.abscissa == "gap" ? "gap " + core::format_number(worst->worst_gap, 4) + " m"
+           (c.abscissa == "gap" ? "gap " + core::told(worst->worst_gap, "m", 4)
                                 : "gap/length " + core::format_number(worst->worst_gap, 4)) +
            ", " + c.by + " " + core::format_number(worst->level, 4) + " " + c.by_unit;
 }

@@ -5,6 +5,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "surrogates/tables/fit/table_batch.h"
 
@@ -181,10 +182,7 @@ std::string caption_of(const ForceTable& table) {
         text += " of " + table.source();
     }
     for (const auto& [name, value] : table.conditions()) {
-        text += ", " + name + " " + core::format_number(value, 4);
-        if (const auto* known = core::find_quantity(name)) {
-            text += " " + known->unit;
-        }
+        text += ", " + core::told_condition(name, value, 4);
     }
     return text + ".";
 }

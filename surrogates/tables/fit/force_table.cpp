@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/tables/fit/fit.h"
 #include "surrogates/tables/fit/force_table_impl.h"
 #include "surrogates/tables/fit/hull.h"
@@ -94,9 +95,8 @@ double ForceTable::value_by_policy(const double* point, double* slope, unsigned 
         if (axis.range == RangePolicy::refuse) {
             throw InputError(
                 "range",
-                axis.name + " " + core::format_number(point[k], 6) + " " + axis.unit +
-                    " is outside the table, which covers " + core::format_number(axis.lower, 6) + " to " +
-                    core::format_number(axis.upper, 6) + " " + axis.unit + " and refuses all else",
+                axis.name + " " + core::told(point[k], axis.unit) + " is outside the table, which covers " +
+                    core::told_range(axis.lower, axis.upper, axis.unit) + " and refuses all else",
                 {impl_->source, {}, {}, {}},
                 "take a value in the range, or let " + axis.name + " hold its end value (clamp) or extrapolate");
         }

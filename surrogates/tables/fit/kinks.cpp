@@ -65,8 +65,9 @@ core::Problems kinks(const SetPoints& points) {
                                  "the turn at " + points.axes[k].name + " " +
                                      core::format_number(core::convert(x[i], column->unit, unit), 6) + " " + unit +
                                      other_axes(points, k, here) + " (" + core::format_number(height, 3) + " " +
-                                     points.unit + ") is not supported by the errors of the points (" +
-                                     core::format_number(joint, 3) + " " + points.unit + ")",
+                                     points.unit +
+                                     ") is not supported by the errors of the points: it is below twice their " +
+                                     "joint error of " + core::format_number(joint, 3) + " " + points.unit,
                                  points.table.place(points.row[here], points.quantity)});
             }
         }

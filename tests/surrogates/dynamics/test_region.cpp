@@ -242,8 +242,8 @@ TEST(Region, CountsTheMotionsThatLeaveTheTable) {
         EXPECT_NEAR(sum, region.path_outside_fraction, 1e-12);
         const bool said = std::any_of(region.remarks.begin(), region.remarks.end(), [](const core::Problem& p) {
             return p.message.find(
-                       "of the motions are at some time outside the range of a force table (gap 0.02 to "
-                       "0.18 m)") != std::string::npos;
+                       "of the motions are at some time outside the range of a force table (gap 20 to "
+                       "180 mm)") != std::string::npos;
         });
         EXPECT_TRUE(said);
     }

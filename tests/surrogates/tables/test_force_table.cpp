@@ -331,7 +331,7 @@ TEST(ForceTable, FollowsThePolicyOfEachAxis) {
     EXPECT_EQ(mixed.at(beyond_pitch).slope[1], 0);
     EXPECT_TRUE(mixed.at(beyond_pitch).outside);
     EXPECT_THAT(message_of([&] { (void)mixed.at(beyond_gap); }),
-                HasSubstr("gap 0.02 m is outside the table, which covers 0.001 to 0.01 m"));
+                HasSubstr("gap 20 mm is outside the table, which covers 1 to 10 mm"));
     EXPECT_NO_THROW((void)mixed.value(beyond_gap)) << "the hot path holds the ends";
     options.range = tables::parse_range_policies("refuse,pitch=extrapolate");
     const auto other = ForceTable::fit(data, "lift_force", options);
