@@ -12,6 +12,7 @@
 #include "cases/design_points.h"
 #include "cases/study_format.h"
 #include "cases/sweep.h"
+#include "cases/sweep_slurm.h"
 #include "core/file.h"
 #include "core/mistyped.h"
 #include "core/name_pattern.h"
@@ -434,7 +435,7 @@ SlurmSpec read_slurm(const TomlTable& table) {
                                     {"memory", &slurm.memory},
                                     {"account", &slurm.account}}) {
         *text = table.string_or(key, "");
-        if (text->find_first_of(" \t\n") != std::string::npos) {
+        if (!slurm_takes(*text)) {
             throw core::InputError("parse", table.path_of(key) + " is '" + *text + "': Slurm takes no blanks there",
                                    table.place(key), "time = \"02:00:00\", memory = \"4G\"");
         }

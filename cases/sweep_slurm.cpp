@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "cases/child_process.h"
@@ -198,9 +200,26 @@ struct Claimed {
     }
 };
 
-/// The job that runs the study when the arrays have ended, however.
-SlurmArray submit_study(const Study& study, const SlurmSubmission& what, const std::vector<SlurmArray>& arrays,
-                        core::Progress& progress) {
+/// Numbers of the jobs that have these cases already.
+std::set<std::string> jobs_of(const std::vector<SweepCase>& cases) {
+    std::set<std::string> jobs;
+    for (const SweepCase& one : cases) {
+        if (const auto claim = read_claim(one.folder); claim && !claim->job.empty()) {
+            jobs.insert(claim->job);
+        }
+    }
+    return jobs;
+}
+
+/// Does one wait that runs the study when the arrays have ended?
+bool has_study_job(const Study& study, core::Progress& progress) {
+    const auto answer = ask("squeue", {"--noheader", "--name", study_job_name(study), "--format", "%A"}, ".", progress);
+    return answer && answer->code == 0 && !answer->text.empty();
+}
+
+/// The job that runs the study when these have ended, however; `arrays` were submitted just now.
+SlurmArray submit_study(const Study& study, const SlurmSubmission& what, const std::set<std::string>& jobs,
+                        std::size_t arrays, core::Progress& progress) {
     SlurmArray job;
     job.script =
         what.script.parent_path() / (what.script.stem().string() + "-study" + what.script.extension().string());
@@ -208,16 +227,20 @@ SlurmArray submit_study(const Study& study, const SlurmSubmission& what, const s
                                      study_job_name(study) + "\n#SBATCH --ntasks=1\n" + site_options(what.settings) +
                                      "exec " + quoted(what.program) + " study run " + quoted(folder_of(study)) + "\n");
     std::string after;
-    for (const SlurmArray& array : arrays) {
-        after += ":" + array.job;
+    for (const std::string& number : jobs) {
+        after += ":" + number;
     }
-    if (!arrays.front().job.empty()) {
-        job.job = submitted(job.script, {"--dependency=afterany" + after}, arrays.size(), progress);
+    if (!jobs.empty()) {
+        job.job = submitted(job.script, {"--dependency=afterany" + after}, arrays, progress);
     }
     return job;
 }
 
 }  // namespace
+
+bool slurm_takes(const std::string& text) {
+    return std::none_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) || std::iscntrl(c); });
+}
 
 fs::path claim_file(const fs::path& case_folder) { return beside(case_folder, ".submitted"); }
 
@@ -275,6 +298,7 @@ SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::P
         return (void)wanted_cases(study, {}, progress), SlurmSweep{};  // says that there is none
     }
     SweepOptions options;
+    options.only = what.only;
     options.stale = what.keep_stale ? StaleCases::keep : what.replace_stale ? StaleCases::replace : StaleCases::redo;
     const fs::path submit_lock = study.folder() / study.sweep->folder / ".submit.lock";
     const auto lock = Lock::take(submit_lock, "sweep --engine slurm");
@@ -284,9 +308,11 @@ SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::P
             {study.folder().string(), {}, {}, {}});
     }
     auto wanted = wanted_cases(study, options, progress);
-    std::erase_if(wanted, [](const SweepCase& one) {
-        return one.state == SweepState::running || one.state == SweepState::waiting;
+    const auto theirs = std::stable_partition(wanted.begin(), wanted.end(), [](const SweepCase& one) {
+        return one.state != SweepState::running && one.state != SweepState::waiting;
     });
+    std::set<std::string> jobs = jobs_of(std::vector<SweepCase>(theirs, wanted.end()));
+    wanted.erase(theirs, wanted.end());
     const auto sbatch = find_program("sbatch");
     const auto most = static_cast<std::size_t>(wanted.empty() ? 1 : tasks_per_array(what.settings, progress));
     SlurmSweep all;
@@ -323,11 +349,13 @@ SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::P
                 throw;
             }
             claimed.write_job(array.job);
+            jobs.insert(array.job);
         }
         arrays.push_back(std::move(array));
     }
-    if (what.settings.run_study && !arrays.empty()) {
-        all.study = submit_study(study, what, arrays, progress);
+    const bool anything = !arrays.empty() || (!jobs.empty() && !has_study_job(study, progress));
+    if (what.settings.run_study && anything) {
+        all.study = submit_study(study, what, jobs, arrays.size(), progress);
     }
     return all;
 }

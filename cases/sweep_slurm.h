@@ -49,7 +49,8 @@ struct SlurmSweep {
 };
 
 struct SlurmSubmission {
-    std::filesystem::path script;  ///< of the first array; those that follow are called NAME-2.sh, ...
+    std::filesystem::path script;     ///< of the first array; those that follow are called NAME-2.sh, ...
+    std::optional<std::string> only;  ///< this case alone, by name
     SlurmSpec settings;
     std::string program;  ///< this program, as the tasks call it
     bool keep_stale = false, replace_stale = false;
@@ -59,9 +60,15 @@ struct SlurmSubmission {
 /// is an sbatch. Cases that wait or run already are left out, and marked as submitted before sbatch is called: nobody
 /// submits them twice. With several cores a task takes that many of one node. More cases than the site takes in one
 /// array (SlurmSpec::max_array, else what `scontrol` says, else 1000) make several; with a throttle one begins when the
-/// other has ended. Empty when nothing is missing. Throws core::SystemError: sbatch refuses (its cases are free again).
+/// other has ended. Empty when nothing is missing. The job that runs the study waits for what was submitted earlier,
+/// too, and is made for that alone where nothing is missing. Throws core::SystemError: sbatch refuses (its cases are
+/// free again).
 SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what,
                         core::Progress& progress = core::Progress::none());
+
+/// May this stand as the value of one of Slurm's options in a script? One word: a blank or a line's end would make of
+/// its rest another option, or a command.
+bool slurm_takes(const std::string& text);
 
 /// Waits until no case of the sweep waits or is being made; the cases as they are then. Throws core::Cancelled.
 std::vector<SweepCase> wait_for_sweep(const Study& study, core::Progress& progress);

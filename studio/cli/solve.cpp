@@ -174,16 +174,51 @@ int cancel(Shell& shell, const cases::Study& study) {
     return done;
 }
 
+/// Options of the other engine are refused: what they ask for would not be done.
+void check_engine(const SweepArguments& given) {
+    if (given.engine == "slurm") {
+        if (given.jobs > 0) {
+            throw core::UsageError("combination", "--jobs is for a sweep on this machine", {},
+                                   "--throttle says how many cases Slurm runs at a time");
+        }
+        return;
+    }
+    for (const auto& [is_given, option] : {std::pair{given.wait, "--wait"},
+                                           {given.run_study, "--run-study"},
+                                           {!given.script.empty(), "--script"},
+                                           {!given.partition.empty(), "--partition"},
+                                           {!given.time.empty(), "--time"},
+                                           {!given.memory.empty(), "--memory"},
+                                           {!given.account.empty(), "--account"},
+                                           {given.throttle.has_value(), "--throttle"},
+                                           {given.max_array.has_value(), "--max-array"}}) {
+        if (is_given) {
+            throw core::UsageError(
+                "combination",
+                std::string(option) + " is for jobs of Slurm" +
+                    (given.wait || given.run_study ? "; a sweep on this machine ends when its cases are solved" : ""),
+                {},
+                "add --engine slurm" +
+                    (given.run_study ? ", or follow with: underbody study run " + given.study : std::string()));
+        }
+    }
+}
+
 int submit(Shell& shell, const cases::Study& study, const SweepArguments& given) {
     cases::SlurmSubmission what;
+    what.only = given.only.empty() ? std::nullopt : std::optional(given.only);
     if (study.sweep) {
         what.settings = study.sweep->slurm;
         what.script = given.script.empty() ? study.folder() / study.sweep->folder / "sweep.sh" : fs::path(given.script);
     }
-    for (const auto& [text, option] : {std::pair{&what.settings.partition, &given.partition},
-                                       {&what.settings.time, &given.time},
-                                       {&what.settings.memory, &given.memory},
-                                       {&what.settings.account, &given.account}}) {
+    for (const auto& [text, option, name] : {std::tuple{&what.settings.partition, &given.partition, "--partition"},
+                                             {&what.settings.time, &given.time, "--time"},
+                                             {&what.settings.memory, &given.memory, "--memory"},
+                                             {&what.settings.account, &given.account, "--account"}}) {
+        if (!cases::slurm_takes(*option)) {
+            throw core::UsageError("value", name + (" '" + *option) + "': Slurm takes no blanks there", {},
+                                   "--time 02:00:00 --memory 4G");
+        }
         *text = option->empty() ? *text : *option;
     }
     what.settings.throttle = given.throttle.value_or(what.settings.throttle);
@@ -220,7 +255,7 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
         return wait(shell, study);
     }
     if (shell.json && arrays.empty()) {
-        shell.print_json({{"missing", 0}, {"arrays", json}});
+        shell.print_json({{"missing", 0}, {"arrays", json}, {"study", after}});
     } else if (shell.json) {
         shell.print_json({{"script", json[0]["script"]}, {"job", json[0]["job"]}, {"arrays", json}, {"study", after}});
     }
@@ -256,14 +291,9 @@ int sweep(Shell& shell, const SweepArguments& given) {
     if (given.cancel) {
         return cancel(shell, study);
     }
+    check_engine(given);
     if (given.engine == "slurm") {
         return submit(shell, study, given);
-    }
-    if (given.wait || given.run_study) {
-        throw core::UsageError("combination",
-                               std::string(given.wait ? "--wait" : "--run-study") +
-                                   " is for jobs of Slurm; a sweep on this machine ends when its cases are solved",
-                               {}, "add --engine slurm, or follow with: underbody study run " + given.study);
     }
     cases::SweepOptions options;
     options.cores = given.cores.value_or(1);
@@ -351,7 +381,7 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
                      "how often a case is tried again whose solver was ended or failed; one that diverged is not "
                      "(default: [sweep.slurm] for slurm, 0)")
         ->check(CLI::Range(0, 100));
-    command->add_option("--only", o->only, "local: this case alone, by name");
+    command->add_option("--only", o->only, "this case alone, by name");
     command->add_option("--script", o->script,
                         "slurm: where the batch script goes (default: sweep.sh beside the cases)");
     command
@@ -371,7 +401,7 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
                      "slurm: cases in one job array; more make several (default: what scontrol says, else 1000)")
         ->check(CLI::Range(1, 4000000));
     command->add_flag("--run-study", o->run_study,
-                      "slurm: a job more, which runs the study when the arrays have ended");
+                      "slurm: a job more, which runs the study when the arrays have ended, also those of earlier");
     command->add_flag(
         "--wait", o->wait,
         "slurm: waits until nothing waits or runs, then says how far each case is; exit code 3 when one is "

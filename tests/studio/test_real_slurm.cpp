@@ -150,6 +150,51 @@ TEST_F(RealSlurm, MoreCasesThanTheSiteTakesInOneArrayMakeSeveral) {
     EXPECT_THAT(elsewhere.errors, HasSubstr("invalid partition"));
 }
 
+TEST_F(RealSlurm, JobsHaveWhatTheStudyAsksFor) {
+    write_study("study", "[\"5 mm\", \"10 mm\", \"20 mm\"]");
+    const fs::path file = folder_.path() / "study" / "study.toml";
+    core::write_file(file, core::read_file(file) +
+                               "[sweep.slurm]\npartition = \"tests\"\ntime = \"00:30:00\"\nmemory = \"300M\"\naccount "
+                               "= \"hull\"\nthrottle = 1\ncores = 2\nmax_array = 2\noptions = [\"--nice=100\"]\n");
+    const auto submitted = run({"sweep", "study", "--engine", "slurm", "--json"});
+    ASSERT_EQ(submitted.exit_code, 0) << submitted.errors;
+    const json arrays = json::parse(submitted.output).at("arrays");
+    ASSERT_EQ(arrays.size(), 2U);
+    for (const auto& array : arrays) {
+        const std::string job = slurm("scontrol", {"show", "job", array.at("job").get<std::string>()}).output;
+        for (const char* has : {"Partition=tests", "TimeLimit=00:30:00", "MinMemoryNode=300M", "Account=hull",
+                                "NumCPUs=2", "NumNodes=1", "Nice=100", "Requeue=1"}) {
+            EXPECT_THAT(job, HasSubstr(has)) << array;
+        }
+    }
+    // One at a time: also the second array waits for the first.
+    EXPECT_THAT(slurm("scontrol", {"show", "job", arrays.at(0).at("job")}).output, HasSubstr("ArrayTaskThrottle=1"));
+    EXPECT_THAT(slurm("scontrol", {"show", "job", arrays.at(1).at("job")}).output,
+                HasSubstr("Dependency=afterany:" + arrays.at(0).at("job").get<std::string>()));
+}
+
+TEST_F(RealSlurm, ACasePastItsTimeGoesOnFromItsCheckpointInTheNextJob) {
+    const std::string job = submit();
+    ASSERT_TRUE(wait_for([&] {
+        return all_past(listed(run({"sweep", "study", "--list", "--json"}).output), 7);
+    })) << json(states());
+    // Its limit is a minute at least: shortened once it runs, it is over at once.
+    for (const char* task : {"_1", "_2"}) {
+        EXPECT_EQ(slurm("scontrol", {"update", "JobId=" + job + task, "TimeLimit=00:00:01"}).exit_code, 0);
+    }
+    ASSERT_TRUE(wait_for([&] { return count(states(), "missing") == 2; }, 120)) << json(states());
+    for (const auto& one : listed(run({"sweep", "study", "--list", "--json"}).output)) {
+        EXPECT_THAT(one.at("reason").get<std::string>(), HasSubstr("cut at iteration"));
+    }
+    release();
+    EXPECT_NE(submit(), job);
+    expect_all_solved(2);
+    for (const auto& [name, state] : states()) {
+        EXPECT_EQ(meshed(name), 1U) << name;
+        EXPECT_EQ(starts(runs() / name), 2U) << name << " went on from its checkpoint";
+    }
+}
+
 TEST_F(RealSlurm, AnUrgentJobPreemptsCasesWhichGoOnFromTheirCheckpoints) {
     const std::string job = submit();
     // Checkpoints are written every five iterations; the stand-in says that each takes a second.

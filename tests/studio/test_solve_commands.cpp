@@ -204,6 +204,40 @@ TEST_F(SolveCommands, ArraysAreAsLongAsTheSiteTakesThemWithItsOptions) {
     EXPECT_THAT(run({"sweep", "study", "--list"}).errors, HasSubstr("Slurm takes no blanks"));
 }
 
+TEST_F(SolveCommands, SlurmIsGivenTheCaseThatIsNamedAndNoOptionThatIsNotDone) {
+    write_study();
+    program("sbatch", "echo \"$@\" >> calls; sed -n '$=' calls");
+    program("squeue", "case \"$*\" in *underbody-sweep*) echo '1 PENDING' ;; esac");
+    const std::vector<std::string> slurm = {"sweep", "study", "--engine", "slurm"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), slurm.begin(), slurm.end());
+        return run(more);
+    };
+    const auto one = with({"--only", "ellipse-h10-p1-u0.5", "--json"});
+    ASSERT_EQ(one.exit_code, 0) << one.errors;
+    EXPECT_EQ(json::parse(one.output)["arrays"][0]["cases"], json::array({"ellipse-h10-p1-u0.5"}));
+    EXPECT_EQ(list()["ellipse-h5-p1-u0.5"]["state"], "missing");
+    EXPECT_THAT(with({"--only", "ellipse-h10"}).errors, HasSubstr("the sweep has no case 'ellipse-h10'"));
+    // Of what was submitted before, the job that runs the study is still to be had, and it waits for that.
+    const auto after = with({"--only", "ellipse-h10-p1-u0.5", "--run-study", "--json"});
+    ASSERT_EQ(after.exit_code, 0) << after.errors;
+    EXPECT_EQ(json::parse(after.output)["study"]["job"], "2") << after.output;
+    EXPECT_THAT(core::read_file(runs() / "calls"), HasSubstr("--dependency=afterany:1 "));
+    for (const auto& [wrong, says] : {std::pair{"1 hour", "'1 hour': Slurm takes no blanks there"},
+                                      {"1\ntouch it", "Slurm takes no blanks there"}}) {
+        const auto refused = with({"--time", wrong});
+        EXPECT_EQ(refused.exit_code, 2);
+        EXPECT_THAT(refused.errors, HasSubstr(says));
+    }
+    EXPECT_THAT(with({"--jobs", "2"}).errors, HasSubstr("--throttle says how many"));
+    for (const char* option :
+         {"--partition", "--time", "--memory", "--account", "--throttle", "--max-array", "--script"}) {
+        const auto refused = run({"sweep", "study", option, "2"});
+        EXPECT_EQ(refused.exit_code, 2) << option;
+        EXPECT_THAT(refused.errors, HasSubstr(std::string(option) + " is for jobs of Slurm")) << option;
+    }
+}
+
 /// A stand-in for the solver on a mesh of blocks: its forces swing by `swing`, its run ends when it finds the file for
 /// which the case's function object waits.
 std::string waiting_solver(const std::string& swing) {
