@@ -76,8 +76,10 @@ public:
         }
     }
 
+    [[nodiscard]] const FixedBits& bits() const { return bits_; }
     std::string text() {
         for (std::size_t k = 0; k < n_; ++k) {
+            bits_.axis.push_back(axes_[k].bits);
             axis_data(k);
         }
         for (ExportQuantity& q : g_.quantities) {
@@ -151,9 +153,9 @@ private:
         define(name, bits);
         array("int32_t", name + "_data", raws(value, bits));
         array("int32_t", name + "_sigma_data", raws(sigma, bits));
-        value_bits_.push_back(bits);
-        slope_bits_.emplace_back();
-        growth_bits_.emplace_back();
+        bits_.value.push_back(bits);
+        bits_.slope.emplace_back();
+        bits_.growth.emplace_back();
         double rounding = std::ldexp(static_cast<double>(n_) + 2, -bits);
         for (std::size_t k = 0; k < n_; ++k) {
             std::vector<double> slope(nodes);
@@ -161,11 +163,17 @@ private:
                 slope[i] = hermite[(i << n_) + (std::size_t{1} << k)];
             }
             const auto& growth = q.error.growth(k);
-            const double most = std::max(largest_of(slope), 1e-9 * largest_of(value));
-            slope_bits_.back().push_back(bits_for(most));
-            growth_bits_.back().push_back(bits_for(std::max({growth[0], growth[1], 1e-9 * most})));
-            define(per(q, g_.axes[k]), slope_bits_.back()[k]);
-            array("int32_t", per(q, g_.axes[k]) + "_data", raws(slope, slope_bits_.back()[k]));
+            // A slope so flat that its bits could not be moved to those of the value has fewer: what they leave out,
+            // the value cannot show.
+            const int room = bits - axes_[k].bits;
+            const auto bits_of = [room](double most) {
+                constexpr int most_moved = 62;
+                return most > 0 ? std::min({bits_for(most), room + most_moved, most_moved}) : std::max(room, 0);
+            };
+            bits_.slope.back().push_back(bits_of(largest_of(slope)));
+            bits_.growth.back().push_back(bits_of(std::max(growth[0], growth[1])));
+            define(per(q, g_.axes[k]), bits_.slope.back()[k]);
+            array("int32_t", per(q, g_.axes[k]) + "_data", raws(slope, bits_.slope.back()[k]));
             rounding += std::ldexp(largest_of(slope), -axes_[k].bits);
         }
         // The steepest straight line is not steeper than twice the steepest slope at its ends.
@@ -315,16 +323,16 @@ private:
             const std::string id = std::to_string(k);
             out_ += "        " + of + "slope[" + id + "] = " + call + per(q, g_.axes[k]) + "_data, cell, t);\n";
             const auto& growth = q.error.growth(k);
-            const int grown = growth_bits_[at][k] + axes_[k].bits - value_bits_[at];
-            const int gone = slope_bits_[at][k] + axes_[k].bits - value_bits_[at];
-            if (gone < 0 || gone > 62 || grown < 0 || grown > 62) {
-                throw core::InputError("range", "the slopes of " + q.name + " along " + g_.axes[k].name +
-                                                    " are too far from its values for whole numbers of 32 bits");
+            const int grown = bits_.growth[at][k] + axes_[k].bits - bits_.value[at];
+            const int gone = bits_.slope[at][k] + axes_[k].bits - bits_.value[at];
+            if (gone < 0 || grown < 0) {
+                throw core::InputError("range", q.name + " is too steep along " + g_.axes[k].name +
+                                                    " beside its values for whole numbers of 32 bits");
             }
             out_ += "        if (over[" + id + "] != 0) {\n            const int64_t far = (over[" + id +
                     "] < 0) ? -(int64_t)over[" + id + "] : (int64_t)over[" + id + "];\n            sigma += " + name_ +
-                    "_over(far * ((over[" + id + "] < 0) ? " + std::to_string(raw(growth[0], growth_bits_[at][k])) +
-                    " : " + std::to_string(raw(growth[1], growth_bits_[at][k])) + "), " + std::to_string(grown) +
+                    "_over(far * ((over[" + id + "] < 0) ? " + std::to_string(raw(growth[0], bits_.growth[at][k])) +
+                    " : " + std::to_string(raw(growth[1], bits_.growth[at][k])) + "), " + std::to_string(grown) +
                     "U);\n";
             if (g_.axes[k].range == RangePolicy::extrapolate) {
                 out_ += "            value += " + name_ + "_over((int64_t)over[" + id + "] * " + of + "slope[" + id +
@@ -352,13 +360,17 @@ private:
     std::size_t n_;
     std::string name_;
     std::vector<FixedAxis> axes_;
-    std::vector<int> value_bits_;
-    std::vector<std::vector<int>> slope_bits_, growth_bits_;
+    FixedBits bits_;
     std::string defines_, out_;
 };
 
 }  // namespace
 
-std::string c_fixed_point(ExportGrid& grid) { return Writer(grid).text(); }
+std::string c_fixed_point(ExportGrid& grid, FixedBits& bits) {
+    Writer writer(grid);
+    std::string text = writer.text();
+    bits = writer.bits();
+    return text;
+}
 
 }  // namespace underbody::tables

@@ -512,18 +512,19 @@ private:
 }  // namespace
 
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result) {
+    FixedBits bits;
     if (grid.fixed_point) {
         ExportGrid rounded = grid;
-        core::write_file(path, c_fixed_point(rounded));
+        core::write_file(path, c_fixed_point(rounded, bits));
         for (std::size_t q = 0; q < rounded.quantities.size(); ++q) {
             result.errors[q].second = rounded.quantities[q].difference;
         }
         result.error = rounded.first().difference;
-        return;
+    } else {
+        core::write_file(path, Writer(grid).text());
     }
-    core::write_file(path, Writer(grid).text());
     if (grid.self_test) {
-        write_c_self_test(grid, path);
+        write_c_self_test(grid, path, grid.fixed_point ? &bits : nullptr);
         result.files.push_back(c_self_test(path));
     }
 }

@@ -126,10 +126,9 @@ ExportResult export_tables(const std::vector<ForceTable>& tables, const std::str
     if (options.self_test && format != "c") {
         throw core::UsageError("format", "a self-test is written beside a C header, not beside " + format);
     }
-    if (options.fixed_point && (format != "c" || options.single_precision || options.self_test)) {
-        throw core::UsageError("format", format != "c"              ? "whole numbers are written as C, not as " + format
-                                         : options.single_precision ? "numbers are float or whole numbers, not both"
-                                                                    : "a self-test compares double or float");
+    if (options.fixed_point && (format != "c" || options.single_precision)) {
+        throw core::UsageError("format", format != "c" ? "whole numbers are written as C, not as " + format
+                                                       : "numbers are float or whole numbers, not both");
     }
     if (options.self_test) {
         check_path(c_self_test(path), tables.front(), options.overwrite);

@@ -109,11 +109,18 @@ std::vector<std::string> header_lines(const ExportGrid& grid);
 
 // The formats.
 std::filesystem::path c_self_test(const std::filesystem::path& path);  ///< NAME_test.c beside NAME.h
+/// Bits after the point of the numbers of a header in whole numbers.
+struct FixedBits {
+    std::vector<int> axis;
+    std::vector<int> value;               ///< of each quantity, also of its error
+    std::vector<std::vector<int>> slope;  ///< of each quantity along each axis
+    std::vector<std::vector<int>> growth;
+};
 /// A program without a library that says 0 when the header gives the values, slopes, errors and flags of the grid at
-/// points in and around it.
-void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& header);
-/// The header in whole numbers; adds their rounding to the differences of the grid.
-std::string c_fixed_point(ExportGrid& grid);
+/// points in and around it; with `bits` a header in whole numbers, in whole numbers.
+void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& header, const FixedBits* bits = nullptr);
+/// The header in whole numbers, and their bits; adds their rounding to the differences of the grid.
+std::string c_fixed_point(ExportGrid& grid, FixedBits& bits);
 void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_csv(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);
 void export_json(const ExportGrid& grid, const std::filesystem::path& path, ExportResult& result);

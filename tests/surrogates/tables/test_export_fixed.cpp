@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "core/text.h"
 #include "tests/surrogates/tables/exports_support.h"
 
 namespace underbody {
@@ -134,6 +135,67 @@ TEST(ExportOfFixedPoint, NeedsNoFloatingPointAndNoDivision) {
               0)
         << core::read_file(folder.path() / "errors.txt");
     EXPECT_EQ(core::read_file(folder.path() / "undefined.txt"), "") << "nothing of a library";
+}
+
+TEST(ExportOfFixedPoint, ComesWithASelfTestInWholeNumbersThatCanFail) {
+    if (!test::have("gcc")) {
+        GTEST_SKIP() << "skipped: gcc is not installed";
+    }
+    core::TemporaryFolder folder;
+    const std::string compile = "cd '" + folder.path().string() +
+                                "' && gcc -std=c99 -O2 -Wall -Wextra -Wconversion -Wno-unused-function -Werror "
+                                "-pedantic body_test.c -o main 2> errors.txt";
+    tables::ExportOptions options;
+    options.self_test = true;
+    options.fixed_point = true;
+    for (const ForceTable& table :
+         {test::one_axis(), test::one_axis("refuse"), test::two_axes(), test::two_axes("gap=extrapolate,pitch=refuse"),
+          test::three_axes(), test::band(), test::band("extrapolate")}) {
+        const auto result = export_table(table, "c", folder.path() / "body.h", options);
+        ASSERT_EQ(result.files.size(), 2U);
+        const std::string test = core::read_file(folder.path() / "body_test.c");
+        EXPECT_EQ(test.find("double"), std::string::npos) << "a core without floating point runs it";
+        ASSERT_EQ(std::system(compile.c_str()), 0) << core::read_file(folder.path() / "errors.txt");
+        EXPECT_EQ(std::system((folder.path() / "main").c_str()), 0) << table.kind();
+    }
+    // A number that is a thousandth off is seen, and so is a wrong flag.
+    const std::string header = core::read_file(folder.path() / "body.h");
+    for (const auto& [right, wrong] : {std::pair{"return (a < 0) ? -r : r;", "return (a < 0) ? -r : (r - (r >> 10));"},
+                                       {"result->outside = 1;", "result->outside = 0;"}}) {
+        std::string changed = header;
+        ASSERT_NE(changed.find(right), std::string::npos);
+        changed.replace(changed.find(right), std::string(right).size(), wrong);
+        core::write_file(folder.path() / "body.h", changed);
+        ASSERT_EQ(std::system(compile.c_str()), 0) << core::read_file(folder.path() / "errors.txt");
+        EXPECT_NE(std::system((folder.path() / "main").c_str()), 0) << wrong;
+    }
+}
+
+TEST(ExportOfFixedPoint, TakesForcesThatHardlyOrNeverDependOnAnAxis) {
+    core::TemporaryFolder folder;
+    for (const double slope : {0.0, 1e-14, 1e-6}) {
+        std::string rows = "gap [mm], jet_voltage [V], lift_force [N]\n";
+        for (const double gap : {2., 4., 8., 16.}) {
+            for (const double voltage : {0., 6., 12.}) {
+                rows += core::format_number(gap) + ", " + core::format_number(voltage) + ", " +
+                        core::format_number(1 / gap + slope * voltage) + "\n";
+            }
+        }
+        tables::ExportOptions options;
+        options.fixed_point = true;
+        options.self_test = true;
+        const auto table =
+            ForceTable::fit(test::csv(rows), "lift_force", test::interpolation("jet_voltage=extrapolate"));
+        ASSERT_NO_THROW(export_table(table, "c", folder.path() / "t.h", options))
+            << slope;  // was: too far from its values
+        if (test::have("gcc")) {
+            ASSERT_EQ(std::system(("cd '" + folder.path().string() +
+                                   "' && gcc -std=c99 -Wall -Wextra -Werror -Wno-unused-function t_test.c -o main && "
+                                   "./main")
+                                      .c_str()),
+                      0);
+        }
+    }
 }
 
 TEST(ExportOfFixedPoint, IsRefusedWhereItMakesNoSense) {
