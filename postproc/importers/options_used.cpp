@@ -64,6 +64,9 @@ void check_length_unit(Field& field, const ReadOptions& options, const core::Pla
 }  // namespace
 
 void refuse_useless_options(const std::string& format, const ReadOptions& options, const core::Place& place) {
+    if (!options.length_unit.empty()) {
+        (void)core::conversion(options.length_unit, "m");  // also where the file says its own
+    }
     if (options.time && !is_among(with_times, format)) {
         throw core::InputError(
             "option",

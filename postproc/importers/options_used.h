@@ -27,7 +27,8 @@ private:
     std::set<std::string> names_;
 };
 
-/// Before reading: throws core::InputError for a time or a companion where files of this format have none.
+/// Before reading: throws core::InputError for a time or a companion where files of this format have none, and for a
+/// length unit that is none of lengths.
 void refuse_useless_options(const std::string& format, const ReadOptions& options, const core::Place& place);
 
 /// After reading: throws core::InputError for a unit stated for a variable that nothing was found like; a unit of

@@ -19,13 +19,20 @@ void mention_common_options(CLI::App& app) {
     }
 }
 
-/// An option that may be given several times takes one word each time. Else it would take the words behind it too, a
-/// file among them: --zones hull body.csv.
+/// An option that may be given several times takes one word each time: else it would take the words behind it too, a
+/// file among them (--zones hull body.csv). The word says something: an empty one would count as not given.
 void one_word_an_option(CLI::App& app) {
+    const CLI::Validator something(
+        [](const std::string& word) { return word.empty() ? "it is empty: leave it out, or say what" : std::string(); },
+        "", "");
     for (auto* option : app.get_options()) {
-        if (!option->get_positional() && option->get_items_expected_max() > 1) {
+        if (option->get_positional() || option->get_items_expected_max() == 0) {
+            continue;
+        }
+        if (option->get_items_expected_max() > 1) {
             option->allow_extra_args(false);
         }
+        option->check(something);
     }
     for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
         one_word_an_option(*command);

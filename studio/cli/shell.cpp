@@ -13,6 +13,7 @@
 #include <iostream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "core/own_files.h"
@@ -253,10 +254,34 @@ void Shell::comment_warnings(core::Table& table) const {
     }
 }
 
+namespace {
+
+constexpr const char* wrong_use = "wrong use";
+
+/// The words for the parser. Behind "--from=" it would take the next word for the value.
+std::vector<std::string> parted(int argc, const char* const* argv) {
+    std::vector<std::string> words;
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word.size() > 3 && word.starts_with("--") && word.find('=') == word.size() - 1) {
+            words.emplace_back(word.substr(0, word.size() - 1));
+            words.emplace_back();
+        } else {
+            words.emplace_back(word);
+        }
+    }
+    std::reverse(words.begin(), words.end());  // as the parser takes them
+    return words;
+}
+
+}  // namespace
+
 void Shell::report(const core::Error& error, const char* what) {
     if (caller_ != nullptr) {
         caller_->error = with_flags(error.what());
-        caller_->error_class = dynamic_cast<const core::UsageError*>(&error) != nullptr    ? "UsageError"
+        const bool usage =
+            dynamic_cast<const core::UsageError*>(&error) != nullptr || std::string_view(what) == wrong_use;
+        caller_->error_class = usage                                                       ? "UsageError"
                                : dynamic_cast<const core::InputError*>(&error) != nullptr  ? "InputError"
                                : dynamic_cast<const core::SystemError*>(&error) != nullptr ? "SystemError"
                                : dynamic_cast<const core::Cancelled*>(&error) != nullptr   ? "Cancelled"
@@ -297,7 +322,7 @@ int Shell::run_action() {
         report(error, "stopped");
         return cancelled;
     } catch (const core::UsageError& error) {
-        report(error, "wrong use");
+        report(error, wrong_use);
         return wrong_usage;
     } catch (const core::InputError& error) {
         // A value with a unit that stands in no file stood on the command line.
@@ -308,7 +333,7 @@ int Shell::run_action() {
             return wrong_input;
         }
         const bool option = error.place().file.empty() && (error.kind() == "unit" || error.kind() == "parse");
-        report(error, option ? "wrong use" : "error");
+        report(error, option ? wrong_use : "error");
         return option ? wrong_usage : wrong_input;
     } catch (const core::Error& error) {
         report(error, "error");
@@ -336,7 +361,7 @@ int Shell::run(CLI::App& app, int argc, const char* const* argv) {
 
 int Shell::execute(CLI::App& app, int argc, const char* const* argv) {
     try {
-        app.parse(argc, argv);
+        app.parse(parted(argc, argv));
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
             return app.exit(error, std::cout, std::cerr);  // --help, --version
@@ -344,7 +369,7 @@ int Shell::execute(CLI::App& app, int argc, const char* const* argv) {
         // The parser may have stopped before it set its flags.
         json =
             json || std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
-        report(usage_error(app, error), "wrong use");
+        report(usage_error(app, error), wrong_use);
         return wrong_usage;
     }
     const int code = run_action();

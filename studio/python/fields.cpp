@@ -172,15 +172,22 @@ void add_zone(py::module_& module) {
         .def_readonly("unit", &postproc::ArrayInfo::unit, docs::ArrayInfo_unit)
         .def_readonly("original_name", &postproc::ArrayInfo::original_name, docs::ArrayInfo_original_name)
         .def_readonly("original_unit", &postproc::ArrayInfo::original_unit, docs::ArrayInfo_original_unit)
-        .def_property_readonly("on", [](const postproc::ArrayInfo& info) { return to_string(info.on); })
+        .def_property_readonly(
+            "on", [](const postproc::ArrayInfo& info) { return to_string(info.on); },
+            "'points', 'faces' or 'cells': where its values are.")
         .def_readonly("components", &postproc::ArrayInfo::components, docs::ArrayInfo_components);
     py::class_<ZoneHandle>(module, "Zone", docs::Zone)
-        .def_property_readonly("name", [](const ZoneHandle& z) { return z.zone.name; })
-        .def_property_readonly("id", [](const ZoneHandle& z) { return z.zone.id; })
-        .def_property_readonly("kind", [](const ZoneHandle& z) { return to_string(z.zone.kind); })
+        .def_property_readonly(
+            "name", [](const ZoneHandle& z) { return z.zone.name; }, "As the file calls it.")
+        .def_property_readonly(
+            "id", [](const ZoneHandle& z) { return z.zone.id; }, "The file's number of it; 0 where it has none.")
+        .def_property_readonly(
+            "kind", [](const ZoneHandle& z) { return to_string(z.zone.kind); },
+            "'wall', 'symmetry', 'fluid', ..., 'unknown'.")
         .def_property_readonly(
             "original_kind", [](const ZoneHandle& z) { return z.zone.original_kind; }, docs::Zone_original_kind)
-        .def_property_readonly("arrays", [](const ZoneHandle& z) { return z.zone.arrays; })
+        .def_property_readonly(
+            "arrays", [](const ZoneHandle& z) { return z.zone.arrays; }, "What arrays it has, and what they are.")
         .def_property_readonly(
             "points", [](const ZoneHandle& z) { return points_of(z.zone); },
             "Coordinates of the points, m, (n, 3), without a copy.")
@@ -255,7 +262,8 @@ void add_surface(py::module_& module) {
                 return result;
             },
             "Index into `patch_names`, one for each triangle.")
-        .def_property_readonly("patch_names", [](const geometry::SurfaceMesh& s) { return s.patch_names; });
+        .def_property_readonly(
+            "patch_names", [](const geometry::SurfaceMesh& s) { return s.patch_names; }, "Names of the patches.");
 }
 
 }  // namespace

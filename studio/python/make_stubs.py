@@ -123,8 +123,7 @@ class Table:
     def __call__(self, points: Any = ..., **held: Any) -> Any: ...
     def slopes(self, points: Any = ..., **held: Any) -> Dict[str, Any]: ...
     def at(self, points: Any = ..., **held: Any) -> Values: ...
-    def __getattr__(self, name: str) -> Callable[..., Result]: ...
-
+@COMMANDS Table@
 class Model:
     path: str
     quantities: List[str]
@@ -132,13 +131,11 @@ class Model:
     effects: List[str]
     def __init__(self, path: Text) -> None: ...
     def table(self, quantity: Optional[str] = ..., **options: Any) -> Table: ...
-    def __getattr__(self, name: str) -> Callable[..., Result]: ...
-
+@COMMANDS Model@
 class Study:
     path: str
     def __init__(self, path: Text) -> None: ...
-    def __getattr__(self, name: str) -> Callable[..., Result]: ...
-
+@COMMANDS Study@
 def read(path: Text, *, zones: Union[str, Sequence[str]] = ..., arrays: Union[str, Sequence[str]] = ...,
          length_unit: str = ..., unit: Optional[Mapping[str, str]] = ..., mesh: Text = ..., time: Number = ...,
          cgns_base: Union[str, int] = ..., surfaces_only: bool = ..., progress: Progress = ...) -> Field: ...
@@ -200,9 +197,17 @@ def stub(name, command):
     return text + f"{name}: _{name}\n"
 
 
+def methods(commands):
+    """Of an object that gives the first argument of these: {name: Command}."""
+    return "".join(f"    def {name}({arguments(one)}) -> Result: ...\n" for name, one in sorted(commands.items()))
+
+
 if __name__ == "__main__":
     sys.path.pop(0)  # this folder, whose package has no module yet
     import underbody
     commands = {name: value for name, value in vars(underbody).items()
                 if isinstance(value, underbody._commands.Command)}
-    pathlib.Path(sys.argv[1]).write_text(HEAD + "".join(stub(*one) for one in sorted(commands.items())))
+    head = HEAD
+    for kind in ("Table", "Model", "Study"):
+        head = head.replace(f"@COMMANDS {kind}@", methods(getattr(underbody, kind)._commands_of({"table": ""} if kind == "Table" else "")))
+    pathlib.Path(sys.argv[1]).write_text(head + "".join(stub(*one) for one in sorted(commands.items())))

@@ -23,7 +23,8 @@ void translate(std::exception_ptr thrown) {
     } catch (const core::UsageError& error) {
         raise("UsageError", error);
     } catch (const core::InputError& error) {
-        raise("InputError", error);
+        const bool argument = error.place().file.empty() && (error.kind() == "unit" || error.kind() == "parse");
+        raise(argument ? "UsageError" : "InputError", error);  // as Shell::run_action has it
     } catch (const core::Error& error) {
         raise("SystemError", error);
     } catch (const std::filesystem::filesystem_error& error) {

@@ -13,7 +13,7 @@ Every command of the command line is a function here, with its options as argume
 ("5 mm"). Conditions and starts are dicts ({"gap": "5 mm"}), ranges pairs ({"gap": (0, "1 m")}), files pathlib or str.
 """
 from . import _underbody
-from ._commands import all_commands as _all_commands, run
+from ._commands import all_commands as _all_commands, checked as _checked, run
 from ._errors import CheckFailed, Cancelled, Defect, Error, InputError, SystemError, UnderbodyWarning, UsageError
 from ._objects import Field, Model, Study, StudyCommand as _StudyCommand, Table, TableCommand as _TableCommand, Values, read
 from ._results import Result
@@ -25,6 +25,7 @@ table = _TableCommand(table._tree, ["table"])  # noqa: F821
 study = _StudyCommand(study._tree, ["study"])  # noqa: F821
 
 
+@_checked
 def model(path):
     """Reads and checks a model (model.toml): a Model."""
     return Model(path)

@@ -1,4 +1,5 @@
 """The commands of the command line as functions: the same options, the same figures, the same errors."""
+import functools
 import inspect
 import json
 import keyword
@@ -53,6 +54,31 @@ def run(words, *, fields=None, fitted=None, progress=None, threads=None, force=F
     return result
 
 
+def said(name, signature, values, options):
+    """The arguments bound to their names. What is wrong with them is an error of use that names the nearest one."""
+    try:
+        return signature.bind(*values, **options)
+    except TypeError as wrong:
+        known = list(signature.parameters)
+        for one in options:
+            if one not in known:
+                raise _errors.wrong_use(f"'{name}' has no argument '{one}'",
+                                        _underbody.did_you_mean(one, known)) from None
+        raise _errors.wrong_use(f"{name}: {wrong}") from None
+
+
+def checked(function, name=None):
+    """The same function, whose wrong arguments are errors of use as those of a command are."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def call(*values, **options):
+        bound = said(name or function.__name__, signature, values, options)
+        return function(*bound.args, **bound.kwargs)
+
+    return call
+
+
 class Command:
     """A command: call it, or its sub-commands by their names. See `help()` of each."""
 
@@ -65,6 +91,10 @@ class Command:
         self.__qualname__ = ".".join(path)
         self.__doc__ = self._help()
         self.__signature__ = self._signature()
+        # What is missing, the command says.
+        self._lenient = self.__signature__.replace(parameters=[
+            one if one.kind is one.VAR_POSITIONAL else one.replace(default=None)
+            for one in self.__signature__.parameters.values()])
         for command in tree["commands"]:
             setattr(self, python_name(command["name"]), Command(command, [*path, command["name"]], given, objects))
 
@@ -103,10 +133,9 @@ class Command:
         return "\n".join([*lines, "", "On the command line:", self._tree["examples"]])
 
     def __call__(self, *values, **options):
-        try:
-            bound = self.__signature__.bind(*values, **options)
-        except TypeError as wrong:
-            raise self._wrong(str(wrong), options) from None
+        if values and not options and self._tree["needs_command"]:  # which names the nearest command
+            return run([*self._path, *map(str, values)], depth=4, **self._objects)
+        bound = said(self.__qualname__, self._lenient, values, options)
         given = {**self._given, **bound.arguments}
         options_words, fields = [], {}
         common = {name: given.pop(name) for name in COMMON if name in given}
@@ -115,10 +144,14 @@ class Command:
                 value = given.get(python_name(one["names"][0]))
                 if value is not None and value is not False:
                     options_words += option_words(one, value)
-            places = []
+            places, missing = [], ""
             for one in self._tree["positionals"]:
                 value = given.get(python_name(one["name"]))
-                if value is not None:
+                if value is None:
+                    missing = missing or (one["name"] if one["required"] else "")
+                elif missing:  # what stands behind would be taken for it
+                    raise _errors.wrong_use(f"{missing} is required")
+                else:
                     fields.update(_fields_of(value if one["several"] else [value]))
                     places += words_of(value, one["several"])
         except TypeError as wrong:
@@ -128,14 +161,6 @@ class Command:
         if any(word.startswith("-") for word in places):
             words = [*self._path, *options_words, "--", *places]
         return run(words, fields=fields, depth=4, **self._objects, **common)
-
-    def _wrong(self, text, options):
-        known = [name for name in self.__signature__.parameters]
-        for name in options:
-            if name not in known:
-                return _errors.wrong_use(f"'{self.__qualname__}' has no argument '{name}'",
-                                         _underbody.did_you_mean(name, known))
-        return _errors.wrong_use(f"{self.__qualname__}: {text}")
 
     def __repr__(self):
         return f"<command {self.__qualname__}{self.__signature__}>"

@@ -1,11 +1,12 @@
 """Fields, force tables, models and studies as objects; what they can do are commands with the first word given."""
 import collections.abc
+import inspect
 import os
 
 import numpy
 
 from . import _errors, _underbody
-from ._commands import Command, find, say
+from ._commands import Command, checked, find, said, say
 from ._words import python_name, text_of
 
 _TABLE_OPTIONS = ("quantity", "where", "axes", "kind", "range")
@@ -83,6 +84,7 @@ def _names(argument, value):
     return list(given)
 
 
+@checked
 def read(path, *, zones=(), arrays=(), length_unit="", unit=None, mesh="", time="", cgns_base="",
          surfaces_only=False, progress=None):
     """Reads a CFD file of any known format (by its content) into a Field.
@@ -100,14 +102,16 @@ def read(path, *, zones=(), arrays=(), length_unit="", unit=None, mesh="", time=
     units = [f"{name}={value}" for name, value in (unit or {}).items()]
     native = _underbody.read(path, *names, length_unit, units, _path(mesh) if mesh else "",
                              "" if time in ("", None) else text_of(time), str(cgns_base), surfaces_only, progress)
-    say([(0 if level else 2, text) for level, text in native.problems], 3)
+    say([(0 if level else 2, text) for level, text in native.problems], 4)
     return Field(path, native)
 
 
 class Values:
     """A table at points: value, sigma, slope ({axis: array}), outside, no_data; arrays in the shape of the points."""
 
-    __slots__ = ("value", "sigma", "slope", "outside", "no_data")
+    __slots__ = {"value": "SI.", "sigma": "Standard deviation.", "slope": "{axis: d value / d axis}, SI.",
+                 "outside": "Whether the point lies outside the axes' ranges.",
+                 "no_data": "Whether no points of the table lie around."}
 
     def __init__(self, value, sigma, slope, outside, no_data):
         self.value, self.sigma, self.slope, self.outside, self.no_data = value, sigma, slope, outside, no_data
@@ -131,14 +135,20 @@ class Table:
     def __init__(self, native, given):
         self._native = native
         self._given = given
+        vars(self).update(self._commands_of(given, {"fitted": {given["table"]: native}}))
+
+    @staticmethod
+    def _commands_of(given, objects=None):
+        """The commands that take a table, by name."""
+        found = {}
         for tree in (*find("table")["commands"], find("export")):
             if tree["name"] in ("fit", "at") or not any(one["name"] == "table" for one in tree["positionals"]):
                 continue
             path = [tree["name"]] if tree["name"] == "export" else ["table", tree["name"]]
             names = {python_name(one["names"][0]) for one in tree["options"]}
             own = {name: value for name, value in given.items() if name == "table" or name in names}
-            setattr(self, python_name(tree["name"]),
-                    Command(tree, path, own, {"fitted": {given["table"]: native}}))
+            found[python_name(tree["name"])] = Command(tree, path, own, objects)
+        return found
 
     def __underbody_path__(self):
         return self._given["table"]
@@ -233,32 +243,40 @@ def _column(name, value, unit):
 class TableCommand(Command):
     """`table(path)` fits a force table and gives a Table; its sub-commands are those of the command line."""
 
-    def __call__(self, path, *, quantity=None, where=None, axes=None, kind=None, range=None, progress=None):
+    def __call__(self, *values, **options):
+        bound = said(self.__qualname__, self.__signature__, values, options)
+        return self._fit(*bound.args, **bound.kwargs)
+
+    def _fit(self, path, *, quantity=None, where=None, axes=None, kind=None, range=None, progress=None):
         given = {"table": path, "quantity": quantity, "where": where, "axes": axes, "kind": kind, "range": range}
         try:
             words = {name: text_of(value) for name, value in given.items() if value is not None}
         except TypeError as wrong:
             raise _errors.wrong_use(str(wrong)) from None
         native, remarks = _underbody.fit(words, progress)
-        say(remarks, 3)
+        say(remarks, 4)
         return Table(native, words)
 
     def _signature(self):
-        import inspect
-        return inspect.signature(self.__call__)
+        return inspect.signature(self._fit)
 
 
 class _Bound:
     """A file or folder, and the commands that take it first."""
 
-    _commands = ()
-
     def __init__(self, path):
         self.path = _path(path)
-        for names in self._commands:
+        vars(self).update(self._commands_of(self.path))
+
+    @classmethod
+    def _commands_of(cls, path):
+        """Those commands, by name."""
+        found = {}
+        for names in cls._commands():
             tree = find(*names)
             first = python_name(tree["positionals"][0]["name"])
-            setattr(self, python_name(names[-1]), Command(tree, list(names), {first: self.path}))
+            found[python_name(names[-1])] = Command(tree, list(names), {first: path})
+        return found
 
     def __underbody_path__(self):
         return self.path
@@ -271,8 +289,10 @@ class Model(_Bound):
     """A model (model.toml), read and checked. Its commands: simulate, predict, region, linear, learn, estimate, control
     and discover, and `table()` of the forces as it simulates them."""
 
-    _commands = tuple((name,) for name in
-                      ("simulate", "predict", "region", "linear", "learn", "estimate", "control", "discover"))
+    @staticmethod
+    def _commands():
+        return [(name,) for name in
+                ("simulate", "predict", "region", "linear", "learn", "estimate", "control", "discover")]
 
     def __init__(self, path):
         super().__init__(path)
@@ -288,18 +308,16 @@ class Model(_Bound):
 class Study(_Bound):
     """A study's folder; its commands are those of `underbody study`."""
 
-    def __init__(self, path):
-        self._commands = tuple(("study", tree["name"]) for tree in find("study")["commands"]
-                               if tree["positionals"]) + (("sweep",),)
-        super().__init__(path)
+    @staticmethod
+    def _commands():
+        return [*(("study", tree["name"]) for tree in find("study")["commands"] if tree["positionals"]), ("sweep",)]
 
 
 class StudyCommand(Command):
     """`study(folder)` gives a Study; its sub-commands are those of the command line."""
 
-    def __call__(self, folder):
-        return Study(folder)
+    def __call__(self, *values, **options):
+        return Study(*said(self.__qualname__, self.__signature__, values, options).args)
 
     def _signature(self):
-        import inspect
-        return inspect.signature(self.__call__)
+        return inspect.signature(lambda folder: None)

@@ -53,6 +53,7 @@ class Result(collections.abc.Mapping):
 
     @property
     def columns(self):
+        """The table that goes with it, {name: array or list}: the motion of `simulate`, the map of `region`."""
         return next(iter(self._tables.values()), {})
 
     def to_dict(self):

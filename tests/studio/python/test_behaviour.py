@@ -1,8 +1,10 @@
 """Errors, warnings, progress, Ctrl-C, threads, stubs."""
+import collections.abc
 import inspect
 import os
 import pathlib
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -30,6 +32,21 @@ FIELD = "fields/ellipse-h5-p0.csv"
     (["region", "glide.toml", "--draws", "3", "--sweep", "speed=0:1"],
      lambda: underbody.region("glide.toml", draws=3, sweep={"speed": (0, 1)})),
     (["study", "list", "fields"], lambda: underbody.study.list("fields")),
+    (["loads", FIELD, "--density", ""], lambda: underbody.loads(FIELD, density="")),
+    (["simulate", "glide.toml", "--from", "", "--for", "5"], lambda: underbody.simulate("glide.toml", start={}, duration=5)),
+    (["simulate", "glide.toml", "--for", "5"], lambda: underbody.simulate("glide.toml", duration=5)),
+    (["control", "heave/model.toml", "--hold", "20 s"], lambda: underbody.control("heave/model.toml", hold="20 s")),
+    (["discover", "heave/model.toml", "--data", "heave"], lambda: underbody.discover("heave/model.toml", data="heave")),
+    (["loads"], lambda: underbody.loads()),
+    (["probe", FIELD, "--point", "0,0,a mm"], lambda: underbody.probe(FIELD, point="0,0,a mm")),
+    (["list", "quantitys"], lambda: underbody.list_("quantitys")),
+    (["info", FIELD, "--length-unit", "kg"], lambda: underbody.read(FIELD, length_unit="kg")),
+    (["info", FIELD, "--time", "abc"], lambda: underbody.read(FIELD, time="abc")),
+    (["info", "fields"], lambda: underbody.read("fields")),
+    (["region", "glide.toml", "--grid", "0x5"], lambda: underbody.region("glide.toml", grid="0x5")),
+    (["region", "glide.toml", "--threads", "-1"], lambda: underbody.region("glide.toml", threads=-1)),
+    (["body", "shapes/ellipse.toml", "--panels", "0.5"], lambda: underbody.body("shapes/ellipse.toml", panels=0.5)),
+    (["new", "modle"], lambda: underbody.new("modle")),
 ])
 def test_errors_have_the_same_words(program, words, call):
     with pytest.raises(underbody.Error) as raised:
@@ -242,6 +259,39 @@ def test_every_command_is_here_with_help():
     assert "list" not in vars(underbody)  # Python's own stays
 
 
+def test_every_public_name_has_words_and_a_type(program):
+    stub = (pathlib.Path(underbody.__file__).parent / "__init__.pyi").read_text()
+    classes = {match[1]: match[0] for match in re.finditer(r"^class (\w+)\b.*?(?=^\S)", stub, re.S | re.M)}
+    native = underbody._underbody
+    known = {name: getattr(underbody, name) for name in underbody.__all__}
+    for name, one in known.items():
+        assert inspect.getdoc(one), name
+        assert re.search(rf"^(def {name}\(|class {name}\b|{name}: )", stub, re.M), f"{name}: no type"
+    for owner in (underbody.Field, underbody.Table, underbody.Model, underbody.Study, underbody.Values, underbody.Result,
+                  native.Zone, native.ArrayInfo, native.Surface):
+        for name in (name for name in dir(owner) if not name.startswith("_")):
+            if hasattr(collections.abc.Mapping, name):
+                continue
+            assert inspect.getdoc(inspect.getattr_static(owner, name)), f"{owner.__name__}.{name}: no words"
+            assert re.search(rf"\b{name}\b", classes[owner.__name__]), f"{owner.__name__}.{name}: no type"
+    for owner, made in (("Model", underbody.model("heave/model.toml")), ("Study", underbody.study("."))):
+        for name in vars(made):
+            assert re.search(rf"\b{name}\b", classes[owner]), f"{owner}.{name}: no type"
+
+
+@pytest.mark.parametrize("call, says", [
+    (lambda: underbody.table(), "table: missing a required argument: 'path'"),
+    (lambda: underbody.table("lift.csv", knd="gp"), "did you mean 'kind'"),
+    (lambda: underbody.read("a.csv", lenght_unit="mm"), "did you mean 'length_unit'"),
+    (lambda: underbody.study("a", "b"), "study: too many positional arguments"),
+    (lambda: underbody.model(), "model: missing a required argument: 'path'"),
+    (lambda: underbody.study.set(), "is required"),
+])
+def test_arguments_of_objects_are_told_as_those_of_commands(program, call, says):
+    with pytest.raises(underbody.UsageError, match=says):
+        call()
+
+
 def test_stubs_are_those_of_the_module(tmp_path):
     pytest.importorskip("mypy", reason="the Debian package python3-mypy is not installed")
     package = pathlib.Path(underbody.__file__).parent
@@ -254,8 +304,13 @@ def test_stubs_are_those_of_the_module(tmp_path):
                       "table = underbody.table('lift.csv', kind='gp')\n"
                       "print(table(gap='5 mm'), underbody.read('a.csv').zones[0]['pressure'].mean())\n"
                       "underbody.region('m.toml', axes={'gap': (0, 1)}, force=True)\n"
-                      "underbody.loads('a.csv', symetry='y')\n")
+                      "underbody.model('m.toml').simulate(start={'gap': 1}, duration='5 s').columns['gap']\n"
+                      "table.equilibria(weight='0.3 N'), underbody.study('.').run(report='a.html')\n"
+                      "underbody.loads('a.csv', symetry='y')\n"
+                      "underbody.model('m.toml').simulte(start={'gap': 1})\n"
+                      "table.equilibria(wieght='0.3 N')\n")
     done = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), str(script)],
                           capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(package.parent)})
     errors = [line for line in done.stdout.splitlines() if "error" in line and "Found" not in line]
-    assert len(errors) == 1 and "symetry" in errors[0], done.stdout
+    wrong = ("symetry", "simulte", "wieght")
+    assert len(errors) == 3 and all(word in error for word, error in zip(wrong, errors)), done.stdout
