@@ -725,6 +725,13 @@ TEST_F(ByProgram, TheoryRefusesWhatItDoesNotTakeAndSaysWhereItEnds) {
     EXPECT_THAT(
         text.output,
         testing::HasSubstr("OUTSIDE ITS RANGE: the water's inertia is left out: U h^2/(nu L) = 39.9, to be below 1"));
+    // The jet of EVIE at 12 V: thin and laminar, and yet CFD has suction where the formula lifts (cases/evie/jet).
+    const std::string plate = "half_length=67.2mm,half_width=50.3mm,nozzle_radius=2.5mm,gap=1mm,flow=";
+    EXPECT_TRUE(ask({"theory", "jet_film", plate + "3.714mL/s"}).at("valid").get<bool>());
+    EXPECT_THAT(
+        run_underbody({"theory", "jet_film", plate + "26.587mL/s"}).output,
+        testing::HasSubstr("OUTSIDE ITS RANGE: the film's inertia is small: Q h/(pi nu a b) = 2.5, to be below"));
+    EXPECT_FALSE(ask({"theory", "radial", "flow=20mL/s,gap=1mm,nozzle_radius=2.5mm,plate_radius=58mm"}).at("valid"));
     const json list = ask({"theory", "list"});
     EXPECT_GE(list.at("theories").size(), 16U);
 }
