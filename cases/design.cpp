@@ -88,10 +88,16 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
         }
         const auto& values = table.numbers(q);
         for (std::size_t i = 0; i < runs.size(); ++i) {
+            const double error = sigma ? table.numbers(q + "_sigma")[i] : std::nan("");
+            if (error < 0) {
+                throw core::InputError("range",
+                                       "a standard deviation of " + core::format_number(error, 6) + ": below nought",
+                                       table.place(i, q + "_sigma"), "leave it empty where it is not known");
+            }
             if (std::isfinite(values[i])) {
                 runs[i].loads[q] = values[i];
-                if (sigma && std::isfinite(table.numbers(q + "_sigma")[i])) {
-                    runs[i].sigmas[q] = table.numbers(q + "_sigma")[i];
+                if (std::isfinite(error)) {
+                    runs[i].sigmas[q] = error;
                 }
             }
         }

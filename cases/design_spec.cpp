@@ -76,6 +76,11 @@ std::vector<std::string> quantities_of(const TomlTable& design) {
     return quantities;
 }
 
+bool says_its_mesh(const TomlTable& table) {
+    const auto keys = case_mesh_keys("medium");
+    return std::any_of(keys.begin(), keys.end(), [&](const core::FileKey& key) { return table.has(key.name); });
+}
+
 FidelitySpec fidelity_from(const TomlTable& table) {
     FidelitySpec f;
     f.name = table.string("name");
@@ -86,6 +91,10 @@ FidelitySpec fidelity_from(const TomlTable& table) {
     const auto& densities = geometry::density_names();
     if (std::find(densities.begin(), densities.end(), f.name) != densities.end()) {
         f.mesh.density = f.name;
+    } else if (const std::string near = core::nearest_name(f.name, densities); !near.empty() && !says_its_mesh(table)) {
+        throw core::InputError(
+            "name", table.path_of("name") + ": '" + f.name + "' is no density of the mesh, and no mesh is said",
+            table.place("name"), "did you mean '" + near + "'? Else say mesh_density");
     }
     f.mesh = read_case_mesh(table, f.mesh);
     f.cost = table.quantity_or("cost", "s", 1);

@@ -82,10 +82,11 @@ void require_clearance(const SurfaceMesh& body, const Placement& placement) {
     if (placement.gap > 0 && placement.roll == 0) {
         const ContactAngles angles = contact_angles(body, placement.gap);
         const auto& limit = placement.pitch > 0 ? angles.nose_up : angles.nose_down;
-        if (limit) {
-            hint +=
-                "; the nearest allowed pitch at this gap: " + text(std::copysign(*limit, placement.pitch) / degree, 5) +
-                " deg";
+        Placement there = placement;
+        there.pitch = std::copysign(limit.value_or(0), placement.pitch);
+        constexpr double rounding = 1e-6;
+        if (limit && clearance(body, there).smallest > -rounding) {  // not where it lies below the ground at any pitch
+            hint += "; the nearest allowed pitch at this gap: " + text(there.pitch / degree, 5) + " deg";
         }
     }
     throw core::InputError("contact",

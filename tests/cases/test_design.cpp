@@ -226,7 +226,16 @@ TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
     const fs::path file = folder_.path() / "design" / "results.csv";
     std::string text = core::read_file(file);
     const std::size_t first = text.find(",0.0005,");
-    text.replace(first, 8, ",,");
+    text.replace(first, 8, ",-0.0005,");
+    core::write_file(file, text);
+    try {
+        (void)open();
+        FAIL() << "a negative standard deviation";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("results.csv:2"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("-0.0005: below nought"));
+    }
+    text.replace(first, 9, ",,");
     core::write_file(file, text);
     const Design known = open();
     EXPECT_FALSE(known.runs().front().sigmas.contains("lift_force"));
@@ -454,6 +463,7 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
     EXPECT_THAT(refused("quantities = [\"lift_force\"", "quantities = [\"gap\""),
                 testing::HasSubstr("there is no load 'gap'"));
     EXPECT_THAT(refused("\"pitch_moment\"]", "\"lift_force\"]"), testing::HasSubstr("twice"));
+    EXPECT_THAT(refused("name = \"medium\"", "name = \"medum\""), testing::HasSubstr("did you mean 'medium'?"));
     EXPECT_THAT(refused("name = \"coarse\"", "name = \"a/../b\""), testing::HasSubstr("no name of a folder"));
     EXPECT_THAT(refused("cost = \"40 s\"", "cost = \"-40 s\""), testing::HasSubstr("cost must be above zero"));
     EXPECT_THAT(refused("cell = 0.25", "iterations = -1"), testing::HasSubstr("iterations is -1"));

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "geometry/body/body_figures.h"
+#include "geometry/body/body_report.h"
 #include "geometry/body/body_shape.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/mass_properties.h"
@@ -168,6 +169,24 @@ TEST(Placement, CountsTheUnderSideBelowAHeight) {
 TEST(MeshFile, SaysWhichEndingsItKnows) {
     EXPECT_THROW(mesh_format_of("body.step"), core::UsageError);
     EXPECT_EQ(mesh_format_of("BODY.STL"), MeshFormat::stl_binary);
+}
+
+TEST(Body, AllowedPitchesAreNamedOnlyWhereThereAreAny) {
+    const auto hint = [](const SurfaceMesh& body, double pitch) {
+        try {
+            require_clearance(body, {0.001, pitch, 0});
+        } catch (const core::InputError& error) {
+            return error.hint();
+        }
+        return std::string("taken");
+    };
+    BodyShape shape;
+    EXPECT_THAT(hint(make_surface(shape), 0.1), testing::HasSubstr("nearest allowed pitch at this gap: 0."));
+    shape.protrusion = Protrusion{};
+    shape.protrusion->height = 0.002;
+    const std::string ridge = hint(make_surface(shape), 0);
+    EXPECT_THAT(ridge, testing::HasSubstr("nearest allowed gap"));
+    EXPECT_THAT(ridge, testing::Not(testing::HasSubstr("allowed pitch"))) << "was: 0 deg, which is refused";
 }
 
 }  // namespace
