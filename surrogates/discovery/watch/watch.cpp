@@ -101,15 +101,16 @@ struct Watch::Parts {
 
     /// Rows of the log are lost, and with them what a controller commanded: it went the way from the last to the next
     /// command that is known (held, a controller's answer to the motion would look like damping that is missing), and
-    /// how much else is said.
-    void bridge_lost_inputs(double from, WatchStep& step) {
+    /// how much else is said. `unread`: the input at `from` is missing, whatever came after it.
+    void bridge_lost_inputs(double from, bool unread, WatchStep& step) {
         const auto after = std::upper_bound(input_time.begin(), input_time.end(), from + 1e-9) - input_time.begin();
         const auto next = static_cast<std::size_t>(after);
-        if (input_time.empty() || (next < input_time.size() && input_time[next] < step.time - 0.5 * usual_step)) {
+        const bool before_step = next < input_time.size() && input_time[next] < step.time - 0.5 * usual_step;
+        if (input_time.empty() || (before_step && !unread)) {
             return;  // logged by itself
         }
-        const double missed = (step.time - from) / usual_step;
-        step.unknown_for = step.time - from;
+        step.unknown_for = (before_step ? input_time[next] : step.time) - from;
+        const double missed = step.unknown_for / usual_step;
         step.unknown_input = 0.5 * std::abs(plant->terms.actuator.gain) * largest_change * std::sqrt(missed);
         if (next == 0 || next == input_time.size() || input_time[next] > step.time + 0.5 * usual_step) {
             return;
@@ -250,8 +251,9 @@ struct Watch::Parts {
                 return {};
             }
             const bool late = usual_step > 0 && dt > input_late * usual_step;
-            if (dt < silence && (late || input_is_lost(steps.back().time))) {
-                bridge_lost_inputs(steps.back().time, step);
+            const bool unread = input_is_lost(steps.back().time);
+            if (dt < silence && (late || unread)) {
+                bridge_lost_inputs(steps.back().time, unread, step);
             }
             if (dt < silence && late) {
                 fill(step);

@@ -28,6 +28,7 @@ void WatchFilter::restart(double time, double gap) {
     spread_.setZero();
     spread_.diagonal() << unknown_gap * unknown_gap, unknown_velocity * unknown_velocity, noise_.slow * noise_.slow;
     deviations_.fill(Eigen::Vector3d::Zero());
+    kick_.setZero();
     memory_ = {};
 }
 
@@ -57,6 +58,7 @@ void WatchFilter::advance_part(double rest, double input) {
             const double push = along[j] / slopes.mass;
             deviations_[j] = f * deviations_[j] + Eigen::Vector3d(q * push, dt * push, 0);
         }
+        kick_ = f * kick_;
         state_[2] *= f(2, 2);
         const double before = w;
         h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
@@ -85,12 +87,20 @@ void WatchFilter::advance(const WatchStep& step) {
     time_ = step.time;
 }
 
-void WatchFilter::expect_kick(double input, double lasted, double ago) {
+void WatchFilter::follow_kick(double input, double lasted) {
     dynamics::HeaveSlopes slopes;
     plant_->acceleration(state_[0], state_[1], {time_, 0, nullptr, nullptr, 0}, nullptr, slopes);
     const double speed = input * lasted / slopes.mass;
-    const Eigen::Vector3d kick(speed * (ago + 0.5 * lasted), speed, 0);
-    spread_ += kick * kick.transpose();
+    kick_ << 0.5 * speed * lasted, speed, 0;
+}
+
+void WatchFilter::take_kick(double size, double error) {
+    state_ += size * kick_;
+    spread_ += error * error * kick_ * kick_.transpose();
+    for (double& memory : memory_) {
+        memory -= size * kick_[1];
+    }
+    kick_.setZero();
 }
 
 WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& row, double variance) const {
@@ -104,6 +114,7 @@ WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& 
     for (std::size_t j = 0; j < watch_directions; ++j) {
         out.slope[j] = row.dot(deviations_[j]) / out.sigma;
     }
+    out.kick = row.dot(kick_) / out.sigma;
     return out;
 }
 
@@ -122,6 +133,7 @@ void WatchFilter::absorb(const WatchInnovation& innovation, double normal) {
     for (std::size_t j = 0; j < watch_directions; ++j) {
         deviations_[j] -= innovation.gain * innovation.slope[j];
     }
+    kick_ -= innovation.gain * innovation.kick;
     state_ += innovation.gain * normal;
     for (double& memory : memory_) {
         memory -= innovation.gain[1] * normal;

@@ -35,6 +35,7 @@ struct WatchInnovation {
     double sigma = 1;   ///< that deviation, in the reading's unit
     /// What one newton (N s/m, N/m ...) of each direction adds to `normal`.
     std::array<double, watch_directions> slope{};
+    double kick = 0;        ///< what the input that nobody logged adds to it, one deviation of it
     double variance = 0;    ///< share of the reading's own noise in sigma^2
     Eigen::Vector3d gain;   ///< of the filter, per unit of `normal`
     Eigen::Vector3d shown;  ///< row of the reading in (gap, velocity, colour)
@@ -50,9 +51,11 @@ public:
     void restart(double time, double gap);
     /// To the step's time.
     void advance(const WatchStep& step);
-    /// An input of this deviation (N), that nobody logged, may have acted for `lasted` s, and that ended `ago` s before
-    /// now.
-    void expect_kick(double input, double lasted, double ago);
+    /// An input of this deviation (N), that nobody logged, may have acted for `lasted` s up to now: what it would have
+    /// done is followed from here on.
+    void follow_kick(double input, double lasted);
+    /// It acted, with so many deviations and that error of them.
+    void take_kick(double size, double error);
     /// What a reading says; nothing changes.
     [[nodiscard]] WatchInnovation gap_innovation(const WatchStep& step) const;
     [[nodiscard]] WatchInnovation velocity_innovation(const WatchStep& step) const;
@@ -68,6 +71,7 @@ private:
     Eigen::Vector3d state_ = Eigen::Vector3d::Zero();
     Eigen::Matrix3d spread_ = Eigen::Matrix3d::Identity();
     std::array<Eigen::Vector3d, watch_directions> deviations_;
+    Eigen::Vector3d kick_ = Eigen::Vector3d::Zero();  ///< what a lost input of one deviation did to the state
     std::array<double, dynamics::history_states> memory_{};
 };
 

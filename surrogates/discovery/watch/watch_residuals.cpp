@@ -12,9 +12,10 @@ constexpr double median_step = 1.03;  ///< of the stochastic search of the media
 constexpr std::size_t settle_steps = 25;  ///< not judged at the begin and after a silence
 constexpr std::size_t first_steps = 3;    ///< after a begin: the reading it began with may have been wild
 constexpr std::size_t most_restarts = 3;
-constexpr std::size_t kick_steps = 15;   ///< in which a lost input shows
+constexpr std::size_t kick_steps = 60;   ///< in which a lost input shows: what it did to a slow body grows with time
 constexpr std::size_t kick_settle = 20;  ///< not judged after one that did
-constexpr double kick_shows = 2.5;       ///< deviations of the sum of innovations since
+constexpr double kick_shows = 2.5;       ///< deviations from none
+constexpr double kick_limit = 2;         ///< of what one reading may say of it: a wild one alone shows none
 constexpr double most_unjudged = 0.5;    ///< steps after lost inputs, as a share of all
 constexpr double lost_memory = 500;      ///< steps
 constexpr double longest_bridge = 3.5;   ///< usual steps whose input was lost too: the state is found anew as well
@@ -41,6 +42,7 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
         for (std::size_t j = 0; j < watch_directions; ++j) {
             expected.slope[j] += colour.phi[k] * sensor.past[k].slope[j];
         }
+        expected.kick += colour.phi[k] * sensor.past[k].kick;
     }
     const double value = (innovation.normal - expected.normal) / colour.scale;
     const bool wild =
@@ -55,13 +57,15 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
     }
     if (wild) {
         used.slope = expected.slope;
+        used.kick = expected.kick;
     } else {
         sensor.rejected = std::abs(value) > gate ? sensor.rejected : 0;
         filter_.absorb(innovation, settling_ + first_steps > settle_steps ? innovation.normal : used.normal);
     }
     std::rotate(sensor.past.begin(), sensor.past.end() - 1, sensor.past.end());
     sensor.past[0] = used;
-    if (wild || settling_ > 0 || sensor.unsettled > 0) {
+    look_for_kick(value, (innovation.kick - expected.kick) / colour.scale);
+    if (wild || settling_ > 0 || unjudged_ > 0 || sensor.unsettled > 0) {
         sensor.unsettled -= sensor.unsettled > 0 ? 1 : 0;
         return {};
     }
@@ -72,10 +76,30 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
     return out;
 }
 
+void WatchResiduals::look_for_kick(double value, double slope) {
+    if (kick_.steps == 0) {
+        return;
+    }
+    kick_.score += slope * std::clamp(value, -kick_limit, kick_limit);
+    kick_.information += slope * slope;
+    // Taken always, it would make the filter follow the noise, and scores along the motion would have a mean.
+    if (std::abs(kick_.score) > kick_shows * std::sqrt(kick_.information + 1)) {
+        take_kick();
+        unjudged_ = std::max(unjudged_, kick_settle);
+    }
+}
+
+void WatchResiduals::take_kick() {
+    const double sure = kick_.information + 1, size = kick_.score / sure;
+    filter_.take_kick(size, std::sqrt(size * size + 1 / sure));  // limited readings show less of it than was there
+    kick_ = {};
+}
+
 void WatchResiduals::restart(const WatchStep& step) {
     filter_.restart(step.time, step.gap);
     settling_ = settle_steps;
     kick_ = {};
+    unjudged_ = 0;
     for (Sensor& sensor : sensors_) {
         sensor.past = {};
         sensor.rejected = 0;
@@ -88,22 +112,10 @@ WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
     const double size = std::abs(innovation.normal) / sensors_[0].colour.scale;
     const bool just_begun = settling_ + first_steps > settle_steps;
     if (size > gate && restarts_ < most_restarts &&
-        (just_begun || (settling_ > 0 && sensors_[0].rejected >= most_wild))) {
+        (just_begun || (settling_ + unjudged_ > 0 && sensors_[0].rejected >= most_wild))) {
         ++restarts_;
         restart(step);
         return filter_.gap_innovation(step);
-    }
-    if (kick_.steps > 0) {
-        --kick_.steps;
-        kick_.sum += std::clamp(innovation.normal / sensors_[0].colour.scale, -gate, gate);
-        kick_.count += 1;
-        // Expected always, it would make the filter follow the noise, and scores along the motion would have a mean.
-        if (std::abs(kick_.sum) > kick_shows * std::sqrt(kick_.count)) {
-            kick_.steps = 0;
-            filter_.expect_kick(kick_.input, kick_.lasted, step.time - kick_.end);
-            settling_ = std::max(settling_, kick_settle);
-            return filter_.gap_innovation(step);
-        }
     }
     return innovation;
 }
@@ -126,15 +138,22 @@ std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep
             }
         }
     }
-    if (step.unknown_input > 0 && time_ && step.time - *time_ <= silence) {
-        kick_ = {step.unknown_input, step.unknown_for, step.time, kick_steps, 0, 0};
+    const bool kicked = step.unknown_input > 0 && !lost && time_ && step.time - *time_ <= silence;
+    if (kicked) {
+        if (kick_.steps > 0) {
+            take_kick();  // another one comes before it is clear what this one did
+        }
+        kick_ = {kick_steps, 0, 0};
         // what a lost input did is none of what the model lacks; where many are lost, something has to be judged
         const double often = std::max(lost_share_, 1e-3);
-        settling_ = std::max(settling_, std::min(kick_steps, static_cast<std::size_t>(most_unjudged / often)));
+        unjudged_ = std::max(unjudged_, std::min(kick_steps, static_cast<std::size_t>(most_unjudged / often)));
     }
     lost_share_ += ((step.unknown_input > 0 ? 1 : 0) - lost_share_) / lost_memory;
     time_ = step.time;
     filter_.advance(step);
+    if (kicked) {
+        filter_.follow_kick(step.unknown_input, step.unknown_for);
+    }
     std::array<std::optional<WatchResidual>, 2> out;
     if (std::isfinite(step.gap)) {
         out[0] = judge(0, gap_innovation(step));
@@ -143,7 +162,9 @@ std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep
         out[1] = judge(1, filter_.velocity_innovation(step));
     }
     settling_ -= settling_ > 0 ? 1 : 0;
-    restarts_ = settling_ > 0 ? restarts_ : 0;
+    unjudged_ -= unjudged_ > 0 ? 1 : 0;
+    kick_.steps -= kick_.steps > 0 ? 1 : 0;
+    restarts_ = settling_ + unjudged_ > 0 ? restarts_ : 0;
     return out;
 }
 

@@ -69,11 +69,15 @@ private:
     std::optional<double> time_;
     double usual_step_ = 0;
     std::size_t settling_ = 0, restarts_ = 0;
+    std::size_t unjudged_ = 0;  ///< steps that a lost input may still show in
+    /// An input that nobody logged: its size in deviations out of the readings since (Willsky and Jones 1976).
     struct Kick {
-        double input = 0, lasted = 0, end = 0;
-        std::size_t steps = 0;      ///< in which it may still show
-        double sum = 0, count = 0;  ///< of the innovations since
+        std::size_t steps = 0;              ///< in which it may still show
+        double score = 0, information = 0;  ///< of the readings since
     };
+    void look_for_kick(double value, double slope);
+    /// What is known of it goes into the state.
+    void take_kick();
     Kick kick_;
     double lost_share_ = 0;  ///< of the steps, lately: those whose input was lost
     Likelihood* likelihood_ = nullptr;

@@ -1,7 +1,8 @@
-// bench_watch false-alarms HOURS [PER_DAY [KIND]]: alarms of the watch over simulated hours in which the rig is its
-// model, with the interval of their rate, for each kind of noise. Days run side by side, each with its own seed (day 1
-// -> 1000). bench_watch delays [SEEDS]: how long changes that make the model's 2 s prediction wrong by 1, 2 and 5
-// noises take to be seen. bench_watch speed: readings a second at 1 kHz, and memory.
+// bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]]: alarms of the watch over simulated hours in which the rig is
+// its model, with the interval of their rate, for each kind of noise. Days run side by side, each with its own seed
+// (day 1 of the first kind: 1000; SEED is added to all). bench_watch delays [SEEDS]: how long changes that make the
+// model's 2 s prediction wrong by 1, 2 and 5 noises take to be seen. bench_watch speed: readings a second at 1 kHz, and
+// memory.
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
@@ -63,7 +64,7 @@ const std::vector<Kind>& kinds() {
     return all;
 }
 
-void count_false_alarms(double hours, double per_day, int only) {
+void count_false_alarms(double hours, double per_day, int only, std::size_t seed) {
     const auto days = static_cast<std::size_t>(std::max(1.0, hours / 24));
     const double each = hours / static_cast<double>(days), in_days = hours / 24;
     for (std::size_t k = 0; k < kinds().size(); ++k) {
@@ -72,7 +73,7 @@ void count_false_alarms(double hours, double per_day, int only) {
         }
         std::vector<int> alarms(days, 0);
         tbb::parallel_for(std::size_t{0}, days, [&](std::size_t day) {
-            WatchedRig rig(1000 * (k + 1) + day);
+            WatchedRig rig(seed + 1000 * (k + 1) + day);
             kinds()[k].set(rig);
             alarms[day] = underbody::test::false_alarms(rig, each, per_day);
         });
@@ -197,9 +198,10 @@ int main(int argc, char** argv) {
     } else if (argc > 1 && std::strcmp(argv[1], "speed") == 0) {
         measure_speed();
     } else if (argc > 1 && std::strcmp(argv[1], "false-alarms") == 0) {
-        count_false_alarms(given(2, 24), given(3, 1), static_cast<int>(given(4, 0)));
+        count_false_alarms(given(2, 24), given(3, 1), static_cast<int>(given(4, 0)),
+                           static_cast<std::size_t>(given(5, 0)));
     } else {
-        std::fprintf(stderr, "bench_watch false-alarms HOURS [PER_DAY [KIND]] | delays [SEEDS] | speed\n");
+        std::fprintf(stderr, "bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]] | delays [SEEDS] | speed\n");
         return 2;
     }
     return 0;

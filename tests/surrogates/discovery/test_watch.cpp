@@ -261,21 +261,20 @@ TEST(Watch, ReadingsSinceTheChangeAreRuns) {
     EXPECT_GE(short_of.since(0).runs[0].table.numbers("time").front(), 149);
 }
 
-/// Fields that hold no number take the reading or the input with them, and nothing else. In white noise the stated rate
-/// is not kept yet (docs/discovery.md). UNDERBODY_WATCH_HOURS=N counts over so many hours, in both.
+/// Fields that hold no number take the reading or the input with them, and nothing else: what an input that was not
+/// read did is told from what is missing (11 a day in white noise before). UNDERBODY_WATCH_HOURS=N counts over so many
+/// hours.
 TEST(Watch, TextBetweenWildReadingsIsNoChange) {
     const char* asked = std::getenv("UNDERBODY_WATCH_HOURS");
     const double hours = asked != nullptr ? std::atof(asked) : 24;
-    for (const double colour : asked != nullptr ? std::vector{0.0, 0.9} : std::vector{0.9}) {
+    for (const double colour : {0.0, 0.9}) {
         WatchedRig rig(colour > 0 ? 8000 : 7000);
         rig.colour = colour;
         rig.wild = 0.01;
         rig.text = 0.005;
         const int alarms = false_alarms(rig, hours, 1);
         std::printf("%d false alarms in %g hours, correlation %g\n", alarms, hours, colour);
-        if (colour > 0) {
-            EXPECT_LE(alarms, 4 + hours / 8);
-        }
+        EXPECT_LE(alarms, 3 + hours / 12) << "one a day is stated; more than this comes less than once in a thousand";
     }
 }
 
