@@ -18,6 +18,7 @@
 #include "studio/desktop/catalogue.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/figures/render.h"
+#include "surrogates/discovery/wording.h"
 
 namespace underbody::studio {
 
@@ -110,9 +111,11 @@ QString error_line(const json& error) {
         return scaled(one, "rmse", shown.factor, 3) + " (" + scaled(one, "low", shown.factor, 3) + " … " +
                scaled(one, "high", shown.factor, 3) + ")";
     };
-    QString text = "<p>Error of " + value(error, "channel") + " on data held out from every fit: <b>" +
-                   interval("before") + "</b> → <b>" + (error.contains("after") ? interval("after") : QString("–")) +
-                   "</b> " + html(pretty_unit(shown.unit));
+    const QString held_out = value(error, "held_out");
+    QString text = "<p>Error of " + value(error, "channel") + qt(discovery::error_is_on(held_out.toStdString())) +
+                   (held_out.isEmpty() ? "" : " (" + held_out + ")") + ": <b>" + interval("before") + "</b> → <b>" +
+                   (error.contains("after") ? interval("after") : QString("–")) + "</b> " +
+                   html(pretty_unit(shown.unit));
     if (error.contains("in_noise")) {
         text += "; in standard deviations of the noise " + value(error["in_noise"], "before", 3) + " → " +
                 value(error["in_noise"], "after", 3);

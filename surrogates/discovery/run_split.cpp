@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/counted.h"
 #include "core/random.h"
 
 namespace underbody::discovery {
@@ -60,8 +61,8 @@ RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::s
         split.test = split.train;
         split.held_out = fitted_runs;
         split.problems.push_back({core::Problem::Severity::warning,
-                                  "with " + std::to_string(count) +
-                                      " run(s) nothing can be held out: the error is that of the fit, and what "
+                                  "with " + core::counted(count, "run") +
+                                      " nothing can be held out: the error is that of the fit, and what "
                                       "runs have in common cannot be told from chance",
                                   core::Place{data.folder.string(), {}, {}, {}}});
     }

@@ -178,9 +178,7 @@ std::string worse_elsewhere(const Discovery& discovery) {
                         : text + (longer ? ": predictions as long as that are no better with what was found." : ".");
 }
 
-bool is_fitted(const Discovery& discovery) {
-    return discovery.held_out == fitted_runs || discovery.held_out == fitted_readings;
-}
+bool is_fitted(const std::string& held_out) { return held_out == fitted_runs || held_out == fitted_readings; }
 
 std::string unknown_sentence(const Discovery& discovery, const std::string& error) {
     if (discovery.by_run) {
@@ -200,15 +198,17 @@ std::string unknown_sentence(const Discovery& discovery, const std::string& erro
 
 }  // namespace
 
-std::string error_is_on(const Discovery& discovery) {
-    return is_fitted(discovery) ? " on the data it was fitted to" : " on held-out data";
+std::string error_is_on(const Discovery& discovery) { return error_is_on(discovery.held_out); }
+
+std::string error_is_on(const std::string& held_out) {
+    return is_fitted(held_out) ? " on the data it was fitted to" : " on held-out data";
 }
 
 std::string verdict_sentence(const Discovery& discovery) {
     const std::string error =
         discovery.error.empty() || (discovery.verdict == "none" && discovery.mended.empty())
             ? ""
-            : (is_fitted(discovery) ? " On the data it was fitted to" : " On held-out data") +
+            : (is_fitted(discovery.held_out) ? " On the data it was fitted to" : " On held-out data") +
                   std::string(" the error of ") + discovery.error.front().channel +
                   (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
                                                                                                    : " falls from ") +

@@ -20,6 +20,8 @@ std::string verdict_sentence(const Discovery& discovery);
 
 /// " on held-out data"; " on the data it was fitted to" where nothing could be held out.
 std::string error_is_on(const Discovery& discovery);
+/// The same of a stored result, by its key `held_out`.
+std::string error_is_on(const std::string& held_out);
 
 /// What the model as found leaves unexplained of the held-out data, as a sentence that begins with a space; empty where
 /// it is noise.

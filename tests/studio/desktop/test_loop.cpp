@@ -11,6 +11,7 @@
 #include "studio/desktop/discovery_panel.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/measurement_sheet.h"
+#include "surrogates/discovery/run_split.h"
 #include "tests/studio/desktop/window_fixture.h"
 
 namespace underbody::studio {
@@ -156,6 +157,19 @@ TEST(DiscoveryPage, HasNoNamesOfVariables) {
     EXPECT_FALSE(page.contains('_')) << page.toStdString();
     EXPECT_TRUE(page.contains("The model lacks coulomb friction."));
     EXPECT_TRUE(page.contains("next-experiment.csv"));
+}
+
+TEST(DiscoveryPage, SaysWhichDataTheErrorIsOf) {
+    const auto page = [](const std::string& held_out) {
+        return discovery_page(
+                   R"json({"verdict": "effect", "error": {"channel": "gap", "unit": "m", "held_out": ")json" +
+                   held_out + R"json(", "before": {"rmse": 0.002, "low": 0.001, "high": 0.003}}})json")
+            .toStdString();
+    };
+    EXPECT_NE(page("2 of 8 runs").find("on held-out data (2 of 8 runs)"), std::string::npos) << page("2 of 8 runs");
+    const std::string fitted = page(discovery::fitted_runs);
+    EXPECT_NE(fitted.find("on the data it was fitted to"), std::string::npos) << fitted;
+    EXPECT_EQ(fitted.find("held"), std::string::npos) << fitted;
 }
 
 // Without a study there is no model to judge by: a sentence, and no sheet.
