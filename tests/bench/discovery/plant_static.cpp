@@ -330,6 +330,15 @@ double least_of(const Law& law, const std::vector<Point>& points) {
     return law.name == "sensor_gain" ? -0.8 : -1e300;
 }
 
+/// A zero off by more than half of the largest gap is seen by everybody (and may leave no force to measure at all).
+double most_of(const Law& law, const std::vector<Point>& points) {
+    double farthest = 0;
+    for (const Point& point : points) {
+        farthest = std::max(farthest, point.gap);
+    }
+    return law.name == "gap_offset" ? 0.5 * farthest : 1e300;
+}
+
 std::vector<Law> laws_of(const Case& wanted) {
     core::Random random(wanted.seed * 6007 + 3);
     core::Random layout(wanted.seed * 13 + 1);
@@ -353,7 +362,7 @@ std::vector<Law> laws_of(const Case& wanted) {
         // to its level: RMS over the set points of the quantity it changes most, in noise
         for (int round = 0; round < 8; ++round) {
             law.a *= std::clamp(wanted.level / std::max(size_in_noise(wanted.family, {law}, points), 1e-9), 0.1, 10.0);
-            law.a = std::max(law.a, least_of(law, points));
+            law.a = std::clamp(law.a, least_of(law, points), most_of(law, points));
         }
         laws.push_back(law);
     }

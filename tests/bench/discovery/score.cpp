@@ -41,14 +41,23 @@ bool Outcome::right() const {
 }
 
 bool Outcome::tied() const {
-    if (right() || verdict != "effect" || truth.size() != 1) {
+    if (right() || verdict != "effect" || truth.empty()) {
         return false;
     }
-    if (names.size() == 1 && same_law(names.front(), truth.front())) {
+    if (truth.size() == 1 && names.size() == 1 && same_law(names.front(), truth.front())) {
         return true;
     }
+    // a rival of several effects is told as "gap_offset + sensor_gain", in any order
+    const auto all_of = [](std::string rest) {
+        std::vector<std::string> parts;
+        for (std::size_t plus = 0; (plus = rest.find(" + ")) != std::string::npos; rest.erase(0, plus + 3)) {
+            parts.push_back(rest.substr(0, plus));
+        }
+        parts.push_back(rest);
+        return sorted(parts);
+    };
     return std::any_of(rivals.begin(), rivals.end(),
-                       [&](const auto& rival) { return rival.second > 0.2 && rival.first == truth.front(); });
+                       [&](const auto& rival) { return rival.second > 0.2 && all_of(rival.first) == sorted(truth); });
 }
 
 Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::string>& truth,
