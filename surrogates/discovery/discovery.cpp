@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/discovery/static/load_cell.h"
-#include "surrogates/dynamics/simulate/pitch_run.h"
+#include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::discovery {
 
@@ -36,9 +36,10 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     const dynamics::Measurements data = reduced(measured);
+    const dynamics::Motion* const motion = dynamics::motion_of(model, data);
     Discovery result = data.kind == dynamics::MeasurementKind::steady ? discover_static(model, data, options, progress)
-                       : dynamics::moves_in_pitch(model, data) ? discover_heave_pitch(model, data, options, progress)
-                                                               : discover_heave(model, data, options, progress);
+                       : motion != nullptr ? discover_motion(*motion, model, data, options, progress)
+                                           : discover_heave(model, data, options, progress);
     if (result.verdict == "none") {
         result.depends_on.clear();  // noise depends on nothing
     }

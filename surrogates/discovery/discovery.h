@@ -21,6 +21,10 @@
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 
+namespace underbody::dynamics {
+class Motion;
+}
+
 namespace underbody::discovery {
 
 struct FoundParameter {
@@ -120,8 +124,8 @@ struct AxisResidual {
 };
 
 struct Discovery {
-    std::string motion = "heave";    ///< of a time series: heave, heave_pitch
-    std::vector<AxisResidual> axes;  ///< heave with pitch: one an axis
+    std::string motion = "heave";    ///< of a time series: heave, heave_pitch, surface
+    std::vector<AxisResidual> axes;  ///< coupled motions: one a load
     std::string verdict;             ///< none, effect, unknown
     std::string sentence;            ///< the verdict for people
     std::vector<FoundEffect> effects;
@@ -190,7 +194,7 @@ Discovery discover_static(const dynamics::Model& model, const dynamics::Measurem
                           const DiscoverOptions& options, core::Progress& progress);
 Discovery discover_heave(const dynamics::Model& model, const dynamics::Measurements& data,
                          const DiscoverOptions& options, core::Progress& progress);
-Discovery discover_heave_pitch(const dynamics::Model& model, const dynamics::Measurements& data,
-                               const DiscoverOptions& options, core::Progress& progress);
+Discovery discover_motion(const dynamics::Motion& motion, const dynamics::Model& model,
+                          const dynamics::Measurements& data, const DiscoverOptions& options, core::Progress& progress);
 
 }  // namespace underbody::discovery

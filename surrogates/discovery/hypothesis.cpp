@@ -27,6 +27,7 @@ struct Look {
     const std::vector<std::string>& quantities;  ///< measured
     bool time_series = false;
     bool pitches = false;  ///< heave with pitch
+    bool slides = false;   ///< on the ground
 };
 
 /// False where the effect can change nothing there.
@@ -34,9 +35,9 @@ bool add_use(Hypothesis& hypothesis, const dynamics::Effect& effect, const std::
     const dynamics::EffectInfo& info = effect.info();
     const std::vector<std::string> own{quantity};
     std::vector<dynamics::EffectParameter> parameters = info.parameters;
-    if (!effect.look(
-            {look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series, look.pitches},
-            parameters, hypothesis.prior)) {
+    if (!effect.look({look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series,
+                      look.pitches, look.slides},
+                     parameters, hypothesis.prior)) {
         return false;
     }
     dynamics::EffectUse use = dynamics::neutral_use(info.name);
@@ -142,7 +143,8 @@ bool can_be_seen(const dynamics::Effect& effect, const Look& look) {
     return std::all_of(search.needs.begin(), search.needs.end(), moves) &&
            (search.needs_one_of.empty() ||
             std::any_of(search.needs_one_of.begin(), search.needs_one_of.end(), moves)) &&
-           effect.look({look.model, look.quantities, look.varying, look.time_series, look.pitches}, parameters, prior);
+           effect.look({look.model, look.quantities, look.varying, look.time_series, look.pitches, look.slides},
+                       parameters, prior);
 }
 
 /// The effect that puts another value in the place of a declared number.
@@ -370,6 +372,17 @@ void add_declared_scale(const Look& look, const std::string& quantity, std::vect
     }
 }
 
+bool acts_on_the_ground(const Hypothesis& hypothesis, const dynamics::Model& model) {
+    dynamics::HeaveTerms terms;
+    for (dynamics::EffectUse use : hypothesis.uses) {
+        for (std::size_t j = 0; j < use.values.size(); ++j) {
+            use.values[j] += 0.1 * dynamics::effect(use.name).info().parameters[j].typical;
+        }
+        dynamics::effect(use.name).add_to(terms, use, model);
+    }
+    return !(terms.surface == dynamics::SurfaceTerms{});
+}
+
 }  // namespace
 
 std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
@@ -380,10 +393,19 @@ std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std
     return list;
 }
 
-std::vector<Hypothesis> heave_pitch_hypotheses(const dynamics::Model& model, const std::vector<Channel>& varying) {
-    const std::vector<std::string> quantities{"lift_force", "pitch_moment"};
-    const Look look{model, varying, quantities, true, true};
+std::vector<Hypothesis> motion_hypotheses(const dynamics::MotionShape& shape, const dynamics::Model& model,
+                                          const std::vector<Channel>& varying) {
+    std::vector<std::string> quantities;
+    for (const dynamics::MotionShape::Load& load : shape.loads) {
+        quantities.push_back(load.quantity);
+    }
+    const bool pitches = &shape == &dynamics::heave_pitch_motion().shape(),
+               slides = &shape == &dynamics::surface_motion().shape();
+    const Look look{model, varying, quantities, true, pitches, slides};
     std::vector<Hypothesis> list = series_hypotheses(look);
+    if (slides) {
+        std::erase_if(list, [&](const Hypothesis& one) { return !acts_on_the_ground(one, model); });
+    }
     for (const std::string& quantity : quantities) {
         add_declared_scale(look, quantity, list);
         if (!list.empty() && list.back().form.starts_with("force.") && quantity == "pitch_moment") {

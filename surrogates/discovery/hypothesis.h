@@ -8,6 +8,7 @@
 #include "surrogates/discovery/least_squares.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::discovery {
 
@@ -71,10 +72,10 @@ std::vector<Hypothesis> static_hypotheses(const dynamics::Model& model, const st
 /// over one of them may be off.
 std::vector<Hypothesis> heave_hypotheses(const dynamics::Model& model, const std::vector<dynamics::Channel>& varying);
 
-/// The names that time series of heave with pitch can show: those of heave, and those that act on the pitch. `varying`:
-/// conditions that differ from run to run, and inputs that vary.
-std::vector<Hypothesis> heave_pitch_hypotheses(const dynamics::Model& model,
-                                               const std::vector<dynamics::Channel>& varying);
+/// The names that time series of a coupled motion can show: those that act in one of its loads. `varying`: conditions
+/// that differ from run to run, and inputs that vary.
+std::vector<Hypothesis> motion_hypotheses(const dynamics::MotionShape& shape, const dynamics::Model& model,
+                                          const std::vector<dynamics::Channel>& varying);
 
 /// Leaves those whose every name is among `names` (empty: all). Throws core::InputError when none is left.
 void keep_only(std::vector<Hypothesis>& list, const std::vector<std::string>& names);

@@ -8,10 +8,10 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/heave/heave_filter.h"
-#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
+#include "surrogates/discovery/motion/motion_experiment.h"
 #include "surrogates/discovery/static/static_experiment.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "surrogates/dynamics/simulate/motion_predict.h"
 
 namespace underbody::discovery {
 
@@ -134,45 +134,43 @@ std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamic
     return {residual};
 }
 
-/// Force and moment, smoothed together.
-std::vector<Residual> heave_pitch_residual(const dynamics::Model& model, const dynamics::Measurements& data,
-                                           core::Progress& progress) {
+/// The loads of a coupled motion, smoothed together.
+std::vector<Residual> motion_residual(const dynamics::Motion& motion, const dynamics::Model& model,
+                                      const dynamics::Measurements& data, core::Progress& progress) {
+    const dynamics::MotionShape& shape = motion.shape();
     std::vector<std::size_t> all(data.runs.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    std::vector<Residual> list(2);
-    list[0].quantity = "lift_force";
-    list[1].quantity = "pitch_moment";
     core::Problems problems;
-    std::array<std::vector<double>, dynamics::pitch_states> states;
-    std::array<std::vector<double>, 2> loads, sigmas;
-    for (const PitchRecord& record : pitch_records(model, data, all, problems)) {
+    std::vector<std::vector<double>> states(shape.states.size()), loads(shape.loads.size()), sigmas(shape.loads.size());
+    for (const MotionRecord& record : motion_records(motion, model, data, all, problems)) {
         progress.check();
-        dynamics::PitchRun run(model, data.runs[record.run], model.records);
-        PitchNoise noise;
-        noise.white = dynamics::pitch_noise(data, data.runs[record.run]);
-        walk_of_loads(run.plant(), noise);
-        const SmoothedPitchRun smoothed = smooth_pitch(run, record, noise);
+        const auto run = motion.run(model, data.runs[record.run], model.records);
+        MotionNoise noise;
+        noise.white = dynamics::motion_noise(shape, data, data.runs[record.run]);
+        walk_of_loads(*run, noise);
+        const SmoothedMotion smoothed = smooth_motion(*run, record, noise);
         for (std::size_t k = 0; k < smoothed.time.size(); ++k) {
-            for (std::size_t i = 0; i < dynamics::pitch_states; ++i) {
+            for (std::size_t i = 0; i < states.size(); ++i) {
                 states[i].push_back(smoothed.state[k][i]);
             }
-            loads[0].push_back(smoothed.force[k]);
-            loads[1].push_back(smoothed.moment[k]);
-            sigmas[0].push_back(smoothed.force_sigma[k]);
-            sigmas[1].push_back(smoothed.moment_sigma[k]);
+            for (std::size_t l = 0; l < loads.size(); ++l) {
+                loads[l].push_back(smoothed.load[k][l]);
+                sigmas[l].push_back(smoothed.load_sigma[k][l]);
+            }
         }
     }
     const std::vector<double>& time = data.runs.front().table.numbers("time");
     const double rate = static_cast<double>(time.size()) / std::max(time.back() - time.front(), 1e-9);
-    for (const std::size_t axis : {0U, 1U}) {
-        Residual& residual = list[axis];
+    std::vector<Residual> list(shape.loads.size());
+    for (std::size_t l = 0; l < list.size(); ++l) {
+        Residual& residual = list[l];
+        residual.quantity = shape.loads[l].quantity;
         residual.problems = problems;
-        residual.mean = mean(loads[axis]);
-        residual.root_mean_square = root_mean_square(loads[axis]);
-        residual.sigma = root_mean_square(sigmas[axis]);
-        for (std::size_t i = 0; i < dynamics::pitch_states; ++i) {
-            residual.curves.push_back(
-                binned(dynamics::channel_name(dynamics::pitch_channels[i]), states[i], loads[axis], 24, 2 * rate));
+        residual.mean = mean(loads[l]);
+        residual.root_mean_square = root_mean_square(loads[l]);
+        residual.sigma = root_mean_square(sigmas[l]);
+        for (const dynamics::MotionShape::Variable& one : shape.variables) {
+            residual.curves.push_back(binned(one.quantity, states[one.state], loads[l], 24, 2 * rate));
             residual.figures.push_back(picture(residual, residual.curves.back()));
         }
     }
@@ -215,8 +213,9 @@ std::vector<Residual> static_residual(const dynamics::Model& model, const dynami
 
 std::vector<Residual> measured_residual(const dynamics::Model& model, const dynamics::Measurements& data,
                                         core::Progress& progress) {
+    const dynamics::Motion* const motion = dynamics::motion_of(model, data);
     return data.kind == dynamics::MeasurementKind::steady ? static_residual(model, data)
-           : dynamics::moves_in_pitch(model, data)        ? heave_pitch_residual(model, data, progress)
+           : motion != nullptr                            ? motion_residual(*motion, model, data, progress)
                                                           : heave_residual(model, data, progress);
 }
 

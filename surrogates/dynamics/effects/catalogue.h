@@ -33,6 +33,15 @@
     X(tether_with_arm)          \
     X(added_pitch_inertia)      \
     X(pitch_sensor_bias)        \
+    X(surge_damping)            \
+    X(sway_damping)             \
+    X(yaw_damping)              \
+    X(thrust_gain)              \
+    X(jet_misalignment)         \
+    X(yaw_moment_offset)        \
+    X(ground_friction)          \
+    X(mass_centre_aside)        \
+    X(cable_pull)               \
     X(gap_offset)               \
     X(force_bias)               \
     X(sensor_gain)              \

@@ -105,6 +105,7 @@ struct SearchContext {
     const std::vector<Channel>& varying;
     bool time_series = false;
     bool pitches = false;  ///< the body's pitch moves with its heave, and was measured
+    bool slides = false;   ///< the body moves on the ground
 };
 
 /// Implementations are stateless and live for ever in the registry; they may be used from many threads.

@@ -268,10 +268,10 @@ const core::FileFormat& dataset_format() {
                                {{"kind", "time_series | static", "\"time_series\"", "",
                                  "runs in time, or set points with measured forces"},
                                 {"title", "text", "\"heave tests over a flat ground\"", "none", "for people"},
-                                {"motion", "heave | heave_pitch", "\"heave_pitch\"",
+                                {"motion", "heave | heave_pitch | surface", "\"heave_pitch\"",
                                  "heave_pitch where every run's pitch moves and the model declares pitch",
                                  "which motion the runs are of: pitch moves freely with heave, or as something else "
-                                 "makes it"}},
+                                 "makes it; surface: flat on the ground, driven by its jets"}},
                                true});
         made.tables.push_back(
             {"noise",

@@ -113,12 +113,19 @@ std::map<std::string, double> read_noise(const core::TomlTable& table) {
     return noise;
 }
 
-void check_time_series(const MeasuredRun& run) {
+void check_time_series(const MeasuredRun& run, bool on_the_ground) {
     const core::Place whole{run.table.source, {}, {}, {}};
-    for (const char* needed : {"time", "gap"}) {
+    const std::vector<std::string> on_ground{"time", "position_x", "position_y", "heading"}, in_heave{"time", "gap"};
+    for (const std::string& needed : on_the_ground ? on_ground : in_heave) {
         if (run.table.find(needed) == nullptr) {
-            throw core::InputError("missing", std::string("a time series needs the column ") + needed, whole,
-                                   "kind = \"static\" is for set points without motion");
+            throw core::InputError(
+                "missing",
+                on_the_ground ? "a run on the ground (motion = \"surface\") needs the column " + needed
+                              : "a time series needs the column " + needed,
+                whole,
+                on_the_ground ? "time [s], position_x [m], position_y [m] and heading [rad], bow to starboard"
+                              : "kind = \"static\" is for set points without motion, motion = \"surface\" for runs "
+                                "on the ground");
         }
     }
     const std::vector<double>& time = run.table.numbers("time");
@@ -200,13 +207,14 @@ void check_static(const MeasuredRun& run) {
 
 /// Columns under names that nobody reads: what they were probably meant for. An input that vanishes leaves the run with
 /// zero input, which is refused.
-void check_names(const MeasuredRun& run, bool time_series, core::Problems& problems) {
+void check_names(const MeasuredRun& run, bool time_series, bool on_the_ground, core::Problems& problems) {
     for (const core::Column& column : run.table.columns()) {
         const std::string base =
             column.name.ends_with("_sigma") ? column.name.substr(0, column.name.size() - 6) : column.name;
         const std::string meant = core::meant_name(column);
         const bool lacking = !meant.empty() && run.table.find(meant) == nullptr && run.conditions.count(meant) == 0;
-        if (core::find_quantity(base) != nullptr || is_simulated(column.name) || (column.is_text() && !lacking)) {
+        if (core::find_quantity(base) != nullptr || is_simulated(column.name) || (column.is_text() && !lacking) ||
+            (on_the_ground && column.name.starts_with("thrust_"))) {
             continue;
         }
         const core::Place place = run.table.place(0, column.name);
@@ -316,7 +324,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
                                                                            : MeasurementKind::time_series;
     data.title = root.string_or("title", {});
-    data.motion = root.choice("motion", {"heave", "heave_pitch"}, "");
+    data.motion = root.choice("motion", {"heave", "heave_pitch", "surface"}, "");
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
     const LogChannels channels = read_channels(root.table_or_empty("log"));
@@ -347,8 +355,10 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
         windows.push_back(window);
         run.table = read_run(run.file, channels, window, entry, data.problems);
-        data.kind == MeasurementKind::steady ? check_static(run) : check_time_series(run);
-        check_names(run, data.kind == MeasurementKind::time_series, data.problems);
+        const bool time_series = data.kind == MeasurementKind::time_series,
+                   on_the_ground = time_series && data.motion == "surface";
+        time_series ? check_time_series(run, on_the_ground) : check_static(run);
+        check_names(run, time_series, on_the_ground, data.problems);
         data.runs.push_back(std::move(run));
     }
     gather(data.problems);

@@ -11,6 +11,7 @@
 #include "surrogates/dynamics/plant/actuator.h"
 #include "surrogates/dynamics/plant/curve.h"
 #include "surrogates/dynamics/plant/pitch_terms.h"
+#include "surrogates/dynamics/plant/surface_terms.h"
 #include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::dynamics {
@@ -68,8 +69,9 @@ struct HeaveSource {
 /// film over the ground act on the velocity itself. Evaluated in surrogates/dynamics/plant/heave_equation.h, nowhere
 /// else.
 struct HeaveTerms {
-    PitchTerms pitch;  ///< what acts on the pitch of a body that moves in heave and pitch
-    double mass = 1;   ///< virtual mass, kg, far from the ground
+    PitchTerms pitch;      ///< what acts on the pitch of a body that moves in heave and pitch
+    SurfaceTerms surface;  ///< what acts on a body that moves on the ground
+    double mass = 1;       ///< virtual mass, kg, far from the ground
     struct Growth {
         double mass = 0;    ///< kg, at the ground
         double length = 1;  ///< m

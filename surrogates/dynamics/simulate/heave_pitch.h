@@ -76,6 +76,7 @@ public:
     /// Kinetic energy of body and water, J.
     [[nodiscard]] double kinetic_energy(const PitchState& y) const;
     [[nodiscard]] double contact_gap() const { return contact_gap_; }
+    [[nodiscard]] double half_length() const { return half_length_; }
     [[nodiscard]] double table_lower() const { return table_lower_; }
     [[nodiscard]] double table_upper() const { return table_upper_; }
     [[nodiscard]] double pitch_lower() const { return pitch_lower_; }

@@ -1,6 +1,5 @@
 #include "surrogates/dynamics/simulate/pitch_run.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -17,6 +16,10 @@ namespace {
 constexpr double longest_step = 0.02;  ///< s
 /// Standard deviations of its noise that a pitch has to move by for its motion to be one.
 constexpr double moves_by = 5;
+
+static_assert(pitch_states <= most_states);
+
+PitchState plant_state(const MotionState& y) { return {y[0], y[1], y[2], y[3]}; }
 
 /// The inputs of a run without its states.
 InputSignals inputs_of(const MeasuredRun& run, const RecordReading& records) {
@@ -104,7 +107,8 @@ PitchRun::PitchRun(const Model& model, const MeasuredRun& run, const RecordReadi
     }
 }
 
-std::vector<std::string> PitchRun::clean_readings(const std::string& name, const GapRange& tables) {
+std::vector<std::string> PitchRun::clean_readings(const std::string& name, const Model& model) {
+    const GapRange tables = lift_gap_range(model);
     std::vector<std::string> said;
     for (std::size_t i = 0; i < pitch_states; ++i) {
         std::vector<double>& values = readings_.value[i];
@@ -127,51 +131,46 @@ std::vector<std::string> PitchRun::clean_readings(const std::string& name, const
     return said;
 }
 
-void PitchRun::rate(std::size_t k, double t, const PitchState& y, ContactState bearing, PitchState& dydt, double force,
-                    double moment) {
+void PitchRun::plant_rate(std::size_t k, double t, const MotionState& y, ContactState bearing, MotionState& dydt,
+                          const MotionLoads& loads) {
     Surroundings around = inputs_.at(t);
-    around.force = force;
-    around.moment = moment;
+    around.force = loads[0];
+    around.moment = loads[1];
     if (!input_moment_.empty()) {
         const double part = linear_ ? (t - time()[k]) / (time()[k + 1] - time()[k]) : 0;
         around.moment += input_moment_[k] + (part > 0 ? part * (input_moment_[k + 1] - input_moment_[k]) : 0);
     }
-    plant_.rate(y, bearing, dydt, around);
+    PitchState rate{};
+    plant_.rate(plant_state(y), bearing, rate, around);
+    std::copy(rate.begin(), rate.end(), dydt.begin());
 }
 
-void PitchRun::advance(std::size_t k, PitchState& y, ContactState& bearing, double force, double moment) {
+void PitchRun::rate(std::size_t k, double t, const MotionState& y, MotionState& dydt, const MotionLoads& loads) {
+    plant_rate(k, t, y, ContactState::free, dydt, loads);
+}
+
+void PitchRun::advance(std::size_t k, MotionState& y, ContactState& bearing, const MotionLoads& loads) {
     const double width = time()[k + 1] - time()[k];
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(width / longest_step * (1 - 1e-9))));
     const double h = width / static_cast<double>(steps);
     for (std::size_t s = 0; s < steps; ++s) {
         // the last moment of a step still has the input that is held over it
-        const double t = time()[k] + h * static_cast<double>(s), middle = t + 0.5 * h, last = t + h * (1 - 1e-9);
-        PitchState d1{}, d2{}, d3{}, d4{}, moved{};
-        const auto along = [&](const PitchState& d, double part) {
-            for (std::size_t i = 0; i < pitch_states; ++i) {
-                moved[i] = y[i] + part * d[i];
-            }
-        };
-        rate(k, t, y, bearing, d1, force, moment);
-        along(d1, 0.5 * h);
-        rate(k, middle, moved, bearing, d2, force, moment);
-        along(d2, 0.5 * h);
-        rate(k, middle, moved, bearing, d3, force, moment);
-        along(d3, h);
-        rate(k, last, moved, bearing, d4, force, moment);
-        for (std::size_t i = 0; i < pitch_states; ++i) {
-            y[i] += h / 6 * (d1[i] + 2 * d2[i] + 2 * d3[i] + d4[i]);
-        }
-        const std::array<double, 2> gaps = plant_.edge_gaps(y);
+        const double begin = time()[k] + h * static_cast<double>(s), last = begin + h * (1 - 1e-9);
+        runge_kutta(h, y, [&](double part, const MotionState& at, MotionState& d) {
+            plant_rate(k, part < 1 ? begin + part * h : last, at, bearing, d, loads);
+        });
+        PitchState there = plant_state(y);
+        const std::array<double, 2> gaps = plant_.edge_gaps(there);
         if (std::min(gaps[0], gaps[1]) < 0) {
-            land(plant_, y, bearing, inputs_.at(last));
+            land(plant_, there, bearing, inputs_.at(last));
+            std::copy(there.begin(), there.end(), y.begin());
         } else if (bearing != ContactState::free) {
-            bearing = plant_.settle(y, bearing, inputs_.at(last));
+            bearing = plant_.settle(there, bearing, inputs_.at(last));
         }
     }
 }
 
-double PitchRun::reading(std::size_t sample, std::size_t state, const PitchState& y) const {
+double PitchRun::reading(std::size_t sample, std::size_t state, const MotionState& y) const {
     const HeaveTerms& terms = plant_.vertical().terms;
     switch (state) {
         case 0:
@@ -183,151 +182,76 @@ double PitchRun::reading(std::size_t sample, std::size_t state, const PitchState
     }
 }
 
-std::vector<PitchState> motion_from(PitchRun& run, const PitchState& state, std::size_t from, std::size_t end) {
-    std::vector<PitchState> motion{state};
-    motion.reserve(end - from + 1);
-    PitchState y = state;
-    ContactState bearing = ContactState::free;
-    for (std::size_t k = from; k < end; ++k) {
-        run.advance(k, y, bearing);
-        motion.push_back(y);
+void PitchRun::load_rates(const MotionState& y, std::array<MotionState, most_loads>& rates) const {
+    rates = {};
+    rates[0][1] = 1 / plant_.mass(y[0]);
+    rates[1][1] = plant_.arm(y[2]) / plant_.inertia();
+    rates[1][3] = 1 / plant_.inertia();
+}
+
+std::optional<MotionStart> PitchRun::start(const MotionReadings& readings, std::size_t from, std::size_t last) const {
+    const StartState gap = start_state(time(), readings.value[0], from, last),
+                     pitch = start_state(time(), readings.value[2], from, last);
+    if (!gap.found() || !pitch.found()) {
+        return {};
     }
-    return motion;
+    const HeaveTerms& terms = plant_.vertical().terms;
+    MotionStart begin;
+    begin.state = {gap.gap - terms.sensor_offset(time()[from]), gap.velocity, pitch.gap - terms.pitch.sensor_bias,
+                   pitch.velocity};
+    begin.slope_factor = {0, gap.slope_factor, 0, pitch.slope_factor};
+    return begin;
+}
+
+/// Until an edge of the base comes to the ground.
+std::size_t PitchRun::free_rows() const {
+    constexpr double near_ground = 3;  // standard deviations of the lower edge's reading
+    const double contact = plant_.contact_gap(), half = plant_.half_length();
+    const MotionReadings& read = readings_;
+    std::size_t end = 0;
+    for (; end < time().size(); ++end) {
+        const double edge = read.value[0][end] - contact - half * std::abs(std::sin(read.value[2][end]));
+        if (edge < near_ground * std::hypot(read.noise[0], half * read.noise[2])) {
+            break;
+        }
+    }
+    return end;
 }
 
 namespace {
 
-using Vector4 = Eigen::Vector4d;
-using Matrix4 = Eigen::Matrix4d;
-
-/// Readings less motion in units of noise, channel by channel; 0 where nothing was read.
-std::vector<double> misfit(PitchRun& run, const PitchReadings& readings, const PitchState& state, std::size_t from,
-                           std::size_t start) {
-    const std::vector<PitchState> motion = motion_from(run, state, from, start);
-    std::vector<double> out;
-    for (std::size_t i = 0; i < pitch_states; ++i) {
-        if (readings.value[i].empty() || !(readings.noise[i] > 0)) {
-            continue;
-        }
-        for (std::size_t k = from; k <= start; ++k) {
-            const double error = (readings.value[i][k] - run.reading(k, i, motion[k - from])) / readings.noise[i];
-            out.push_back(std::isfinite(readings.value[i][k]) ? error : 0.0);
-        }
+class HeavePitchMotion final : public Motion {
+public:
+    [[nodiscard]] const MotionShape& shape() const override {
+        static const MotionShape shape{"heave_pitch",
+                                       "heave with pitch",
+                                       "touches the ground with an edge",
+                                       {{"gap", "m", 0, 1e-4, 1e-5, 0.05, 0, 0, 100},
+                                        {"heave_velocity", "m/s", 0, 1e-3, 1e-5, 0.2, 0.05, 0.05, 1e300},
+                                        {"pitch", "rad", 2, 1e-3, 1e-5, 0.2, 0, 0, 10},
+                                        {"pitch_rate", "rad/s", 2, 1e-2, 1e-4, 1, 0.3, 0.5, 1e300}},
+                                       {{"lift_force", "N", 0.002, 0.001}, {"pitch_moment", "N m", 0.02, 0.05}},
+                                       {{"gap", 0}, {"heave_velocity", 1}, {"pitch", 2}, {"pitch_rate", 3}},
+                                       {0, 2}};
+        return shape;
     }
-    return out;
-}
-
-double square(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) {
-        sum += value * value;
+    [[nodiscard]] std::unique_ptr<MeasuredMotion> run(const Model& model, const MeasuredRun& run,
+                                                      const RecordReading& records) const override {
+        return std::make_unique<PitchRun>(model, run, records);
     }
-    return std::isfinite(sum) ? sum : 1e300;
-}
+    [[nodiscard]] bool driven(const Model& /*model*/, const MeasuredRun& run) const override {
+        return column_moves(run, "input_force");
+    }
+    [[nodiscard]] std::vector<HeaveEquilibrium> equilibria(const Model& model, const Conditions& held) const override {
+        return HeavePitch(model, held).equilibria();
+    }
+};
 
 }  // namespace
 
-std::optional<PitchState> fitted_state(PitchRun& run, const PitchReadings& readings, std::size_t from,
-                                       std::size_t start) {
-    const StartState gap = start_state(run.time(), readings.value[0], from, start),
-                     pitch = start_state(run.time(), readings.value[2], from, start);
-    if (!gap.found() || !pitch.found()) {
-        return {};
-    }
-    const HeaveTerms& terms = run.plant().vertical().terms;
-    PitchState state{gap.gap - terms.sensor_offset(run.time()[from]), gap.velocity, pitch.gap - terms.pitch.sensor_bias,
-                     pitch.velocity};
-    const PitchState line = state;
-    // what the motion does not show is taken from the line, loosely
-    const PitchState loose{0, 0.05 + 10 * readings.noise[0] * std::sqrt(gap.slope_factor), 0,
-                           0.5 + 10 * readings.noise[2] * std::sqrt(pitch.slope_factor)};
-    constexpr PitchState small{1e-5, 1e-5, 1e-5, 1e-4}, largest{0.05, 0.2, 0.2, 1};
-    const auto prior = [&](const PitchState& y) {
-        return std::pow((y[1] - line[1]) / loose[1], 2) + std::pow((y[3] - line[3]) / loose[3], 2);
-    };
-    std::vector<double> base = misfit(run, readings, state, from, start);
-    double cost = square(base) + prior(state);
-    double damping = 1e-9;
-    for (int iteration = 0; iteration < 12; ++iteration) {
-        std::array<std::vector<double>, pitch_states> slope;
-        for (std::size_t i = 0; i < pitch_states; ++i) {
-            PitchState moved = state;
-            moved[i] += small[i];
-            slope[i] = misfit(run, readings, moved, from, start);
-        }
-        Matrix4 normal = Matrix4::Zero();
-        Vector4 right = Vector4::Zero();
-        for (std::size_t n = 0; n < base.size(); ++n) {
-            Vector4 row;
-            for (std::size_t i = 0; i < pitch_states; ++i) {
-                row[static_cast<int>(i)] = (slope[i][n] - base[n]) / small[i];
-            }
-            if (row.allFinite() && std::isfinite(base[n])) {
-                normal += row * row.transpose();
-                right -= row * base[n];
-            }
-        }
-        for (const int i : {1, 3}) {
-            const auto k = static_cast<std::size_t>(i);
-            normal(i, i) += 1 / (loose[k] * loose[k]);
-            right[i] -= (state[k] - line[k]) / (loose[k] * loose[k]);
-        }
-        bool better = false;
-        double change = 0;
-        for (int attempt = 0; attempt < 6 && !better; ++attempt) {
-            Matrix4 damped = normal;
-            damped.diagonal() *= 1 + damping;
-            const Vector4 step = damped.ldlt().solve(right);
-            PitchState moved = state;
-            change = 0;
-            for (std::size_t i = 0; i < pitch_states; ++i) {
-                const double by = std::clamp(step[static_cast<int>(i)], -largest[i], largest[i]);
-                moved[i] += by;
-                change = std::max(change, std::abs(by) / largest[i]);
-            }
-            std::vector<double> there = misfit(run, readings, moved, from, start);
-            const double cost_there = square(there) + prior(moved);
-            better = cost_there < cost;
-            if (better) {
-                state = moved;
-                base = std::move(there);
-                cost = cost_there;
-                damping = std::max(1e-9, 0.1 * damping);
-            } else if (change < 1e-7) {
-                break;
-            } else {
-                damping = std::max(1e-3, 10 * damping);
-            }
-        }
-        if (!better || change < 1e-6) {
-            break;
-        }
-    }
-    return state;
-}
-
-std::vector<PitchWindow> predict_windows(PitchRun& run, double horizon, double past) {
-    const std::vector<double>& t = run.time();
-    const auto at = [&t](double time) {
-        return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
-    };
-    std::vector<PitchWindow> windows;
-    for (double begin = t.front() + past; begin < t.back(); begin += horizon) {
-        PitchWindow window;
-        window.from = at(begin - past);
-        window.start = at(begin);
-        window.end = std::max<std::size_t>(std::min(at(std::min(begin + horizon, t.back()) + 1e-6), t.size()), 1) - 1;
-        if (window.end <= window.start || window.start <= window.from + 2) {
-            continue;
-        }
-        const std::optional<PitchState> state = fitted_state(run, run.readings(), window.from, window.start);
-        if (state) {
-            window.state = *state;
-            window.motion = motion_from(run, *state, window.from, window.end);
-            windows.push_back(std::move(window));
-        }
-    }
-    return windows;
+const Motion& heave_pitch_motion() {
+    static const HeavePitchMotion motion;
+    return motion;
 }
 
 }  // namespace underbody::dynamics

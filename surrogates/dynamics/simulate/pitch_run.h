@@ -10,6 +10,7 @@
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::dynamics {
 
@@ -23,64 +24,41 @@ inline constexpr std::array<Channel, pitch_states> pitch_channels = {Channel::ga
 /// than five times its noise. Throws core::InputError where dataset.toml says so and a run has no pitch.
 bool moves_in_pitch(const Model& model, const Measurements& data);
 
-/// What was measured of a run, state by state.
-struct PitchReadings {
-    std::array<std::vector<double>, pitch_states> value;  ///< empty: not measured; NaN: no reading
-    std::array<double, pitch_states> noise{};             ///< one standard deviation of a reading
-};
-
 /// One run with the plant of one model: inputs as the model's [records] say, held where these say nothing. Not for
 /// several threads at once.
-class PitchRun {
+class PitchRun final : public MeasuredMotion {
 public:
     /// Throws core::InputError as HeavePitch does, and for a model with a history force, which has no states here.
     PitchRun(const Model& model, const MeasuredRun& run, const RecordReading& records);
-    PitchRun(const PitchRun&) = delete;
-    PitchRun& operator=(const PitchRun&) = delete;
 
+    [[nodiscard]] const MotionShape& shape() const override { return heave_pitch_motion().shape(); }
     [[nodiscard]] const HeavePitch& plant() const { return plant_; }
-    [[nodiscard]] const std::vector<double>& time() const { return signals_.time; }
-    /// dy/dt within the interval after sample k, with a force (N up) and a moment (N m nose up) beside the model's.
-    void rate(std::size_t k, double t, const PitchState& y, ContactState bearing, PitchState& dydt, double force = 0,
-              double moment = 0);
-    /// From sample k to the next by the fourth-order rule of Runge and Kutta in steps of at most 20 ms, through
-    /// contact.
-    void advance(std::size_t k, PitchState& y, ContactState& bearing, double force = 0, double moment = 0);
-    /// What the sensor of a state reads at a sample; a delay of the gap's sensor to first order in its velocity.
-    [[nodiscard]] double reading(std::size_t sample, std::size_t state, const PitchState& y) const;
-    /// Readings of the run, velocities with the factor of the records.
-    [[nodiscard]] const PitchReadings& readings() const { return readings_; }
-    void set_noise(const std::array<double, pitch_states>& noise) { readings_.noise = noise; }
-    /// Readings that a model is not judged by become missing: outliers, and gaps at the end of the sensor's range. What
-    /// is said of it, and of gaps outside the tables of the model.
-    std::vector<std::string> clean_readings(const std::string& name, const GapRange& tables);
+    [[nodiscard]] const std::vector<double>& time() const override { return signals_.time; }
+    void rate(std::size_t k, double t, const MotionState& y, MotionState& dydt, const MotionLoads& loads) override;
+    /// In steps of at most 20 ms.
+    void advance(std::size_t k, MotionState& y, ContactState& bearing, const MotionLoads& loads) override;
+    [[nodiscard]] double reading(std::size_t sample, std::size_t state, const MotionState& y) const override;
+    [[nodiscard]] double delay(std::size_t state) const override {
+        return state == 0 ? plant_.vertical().terms.sensor_delay : 0;
+    }
+    void load_rates(const MotionState& y, std::array<MotionState, most_loads>& rates) const override;
+    [[nodiscard]] double inertia(std::size_t load) const override {
+        return load == 0 ? plant_.mass() : plant_.inertia();
+    }
+    [[nodiscard]] std::optional<MotionStart> start(const MotionReadings& readings, std::size_t from,
+                                                   std::size_t last) const override;
+    [[nodiscard]] std::size_t free_rows() const override;
+    /// Outliers, and gaps at the end of the sensor's range; gaps outside the tables of the model are said.
+    std::vector<std::string> clean_readings(const std::string& name, const Model& model) override;
 
 private:
+    void plant_rate(std::size_t k, double t, const MotionState& y, ContactState bearing, MotionState& dydt,
+                    const MotionLoads& loads);
     InputSignals signals_;
     HeavePitch plant_;
     RecordedInputs inputs_;
     std::vector<double> input_moment_;  ///< N m; empty: none
     bool linear_ = false;
-    PitchReadings readings_;
 };
-
-/// A prediction of one window: from the state that fits the readings from..start best, to end.
-struct PitchWindow {
-    std::size_t from = 0, start = 0, end = 0;
-    PitchState state{};              ///< at `from`
-    std::vector<PitchState> motion;  ///< at from..end
-    [[nodiscard]] const PitchState& at(std::size_t sample) const { return motion[sample - from]; }
-};
-
-/// The motion from sample `from` to `end`.
-std::vector<PitchState> motion_from(PitchRun& run, const PitchState& state, std::size_t from, std::size_t end);
-
-/// The state at `from` whose motion fits these readings from..start best, in units of their noise; nothing later is
-/// looked at. Nothing where gap or pitch were not read often enough.
-std::optional<PitchState> fitted_state(PitchRun& run, const PitchReadings& readings, std::size_t from,
-                                       std::size_t start);
-
-/// Windows of `horizon` seconds one after the other, each begun from `past` seconds of readings.
-std::vector<PitchWindow> predict_windows(PitchRun& run, double horizon, double past);
 
 }  // namespace underbody::dynamics

@@ -17,7 +17,7 @@
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/horizon.h"
-#include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "surrogates/dynamics/simulate/motion_predict.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
 namespace underbody::dynamics {
@@ -446,8 +446,8 @@ void remark_unused(const SeriesPrediction& all, const Model& model, const Measur
 
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
-    if (moves_in_pitch(model, data)) {
-        return predict_pitch_series(model, data, options, progress);
+    if (const Motion* const motion = motion_of(model, data)) {
+        return predict_motion_series(*motion, model, data, options, progress);
     }
     Prediction out;
     out.time_series = true;

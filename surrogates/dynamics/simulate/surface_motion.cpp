@@ -11,6 +11,7 @@ namespace underbody::dynamics {
 
 SurfaceMotion::SurfaceMotion(const Model& declared, const Conditions& held, const std::vector<Channel>& varying)
     : model_(declared.resolved()),
+      acting_(model_.jets),
       held_(held.over(declared.conditions)),
       vertical_(vertical_channel(model_, held_, varying)) {
     const Vehicle& v = model_.vehicle;
@@ -20,6 +21,13 @@ SurfaceMotion::SurfaceMotion(const Model& declared, const Conditions& held, cons
     mass_x_ = v.mass + v.added_mass_surge;
     mass_y_ = v.mass + v.added_mass_sway;
     inertia_ = v.yaw_inertia + v.added_inertia_yaw;
+    const SurfaceTerms& effects = vertical_.terms.surface;
+    for (Jet& jet : acting_) {
+        const double c = std::cos(effects.jet_angle), s = std::sin(effects.jet_angle), along = jet.direction[0],
+                     across = jet.direction[1];
+        jet.direction = {effects.thrust_gain * (c * along - s * across), effects.thrust_gain * (s * along + c * across),
+                         effects.thrust_gain * jet.direction[2]};
+    }
     gap_ = vertical_.terms.contact_gap;
     base_ = v.base_centre();
     base_[2] = std::isnan(base_[2]) ? 0 : base_[2];
@@ -53,16 +61,19 @@ SurfaceMotion::Loads SurfaceMotion::loads(const SurfaceState& y, std::span<const
     seen[Channel::speed] = std::abs(u);
     const HeaveMoment moment{around.t, std::isnan(around.input) ? vertical_.held_input() : around.input, nullptr,
                              seen.value.data()};
-    const Wrench jets = jet_wrench(model_.jets, thrust);
+    const Wrench jets = jet_wrench(acting_, thrust);
+    const SurfaceTerms& effects = vertical_.terms.surface;
+    const double pull_x = effects.pull_x * std::cos(y[3]) + effects.pull_y * std::sin(y[3]),
+                 pull_y = effects.pull_y * std::cos(y[3]) - effects.pull_x * std::sin(y[3]);
     const Environment& water = model_.environment;
     const double lift = vertical_.roughened(lift_(seen), gap_);
     const double table_drag = drag_.empty() ? 0.0 : drag_(seen) * u / std::sqrt(u * u + 1e-6);
     const double side = side_(seen), drag_u = drag(model_.drag_surge, water, u);
     Loads all;
-    all.x = jets.force[0] - drag_u - table_drag;
-    all.y = jets.force[1] - drag(model_.drag_sway, water, v) + side;
-    all.turn =
-        jets.moment[2] - drag(model_.drag_yaw, water, r) + yaw_moment_(seen) + base_[0] * side + base_[1] * table_drag;
+    all.x = jets.force[0] - drag_u - table_drag - effects.surge * u + pull_x;
+    all.y = jets.force[1] - drag(model_.drag_sway, water, v) + side - effects.sway * v + pull_y;
+    all.turn = jets.moment[2] - drag(model_.drag_yaw, water, r) + yaw_moment_(seen) + base_[0] * side +
+               base_[1] * table_drag + effects.moment - effects.yaw * r;
     all.up = lift + vertical_.other_force(gap_, 0, moment) + vertical_.wave_force(around.t) - jets.force[2] -
              vertical_.water_drag(-vertical_.terms.current);
     all.pitch = jets.moment[1] + pitch_moment_(seen) + base_[0] * lift - base_[2] * table_drag + buoyancy_moment_ +
@@ -73,7 +84,8 @@ SurfaceMotion::Loads SurfaceMotion::loads(const SurfaceState& y, std::span<const
 SurfaceMotion::Contact SurfaceMotion::contact(const SurfaceState& y, const Loads& all) const {
     Contact c;
     c.normal = -all.up;
-    const double pressed = std::max(c.normal, 0.0), limit = model_.contact.friction * pressed,
+    const double pressed = std::max(c.normal, 0.0),
+                 limit = std::max(0.0, model_.contact.friction + vertical_.terms.surface.friction) * pressed,
                  width = model_.contact.slip_speed;
     // The point of the resultant and the slip there depend on each other only through sway in yaw: settled in a few
     // rounds.
@@ -105,7 +117,9 @@ void SurfaceMotion::rate(const SurfaceState& y, std::span<const double> thrust, 
     const double u = y[0], v = y[1], r = y[2];
     d[0] = (all.x + c.friction_x + mass_y_ * r * v) / mass_x_;
     d[1] = (all.y + c.friction_y - mass_x_ * r * u) / mass_y_;
-    d[2] = (all.turn + c.forward * c.friction_y - base_[1] * c.friction_x + (mass_x_ - mass_y_) * u * v) / inertia_;
+    d[2] = (all.turn + c.forward * c.friction_y - base_[1] * c.friction_x + (mass_x_ - mass_y_) * u * v +
+            vertical_.terms.surface.mass_aside * (all.x + c.friction_x)) /
+           inertia_;
     d[3] = r;
     d[4] = u * std::cos(y[3]) - v * std::sin(y[3]);
     d[5] = u * std::sin(y[3]) + v * std::cos(y[3]);

@@ -39,6 +39,8 @@ public:
     [[nodiscard]] const std::vector<Jet>& jets() const { return model_.jets; }
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const HeavePlant& vertical() const { return vertical_; }
+    /// Virtual masses in surge and sway, kg, and inertia in yaw, kg m^2.
+    [[nodiscard]] std::array<double, 3> inertias() const { return {mass_x_, mass_y_, inertia_}; }
     /// Nose and tail end of the base before the centre of gravity; infinite when its length is not declared.
     [[nodiscard]] double nose() const { return nose_; }
     [[nodiscard]] double tail() const { return tail_; }
@@ -54,6 +56,7 @@ private:
     [[nodiscard]] Loads loads(const SurfaceState& y, std::span<const double> thrust, const Surroundings& around) const;
     [[nodiscard]] Contact contact(const SurfaceState& y, const Loads& loads) const;
     Model model_;
+    std::vector<Jet> acting_;  ///< as effects of the model gain and turn them
     Conditions held_;
     HeavePlant vertical_;
     ForceSources lift_, drag_, side_, pitch_moment_, yaw_moment_;

@@ -155,6 +155,10 @@ double internal::range_of(const std::vector<double>& values) {
 RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks,
                           const dynamics::RecordReading& records) {
     RunSignals s;
+    if (!run.has("gap")) {
+        throw core::InputError("missing", "run '" + run.name + "' has no gap: estimates are of heave",
+                               {run.table.source, {}, {}, {}}, "runs on the ground are for predict and discover");
+    }
     s.time = run.table.numbers("time");
     s.gap = run.values("gap");
     s.velocity = dynamics::as_read(run, "heave_velocity", records);

@@ -159,19 +159,4 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
     return data;
 }
 
-/// The data set as files.
-inline void write_pitch_runs(const dynamics::Measurements& data, const std::filesystem::path& folder,
-                             const std::string& title) {
-    std::filesystem::create_directories(folder);
-    std::string text = "kind = \"time_series\"\nmotion = \"heave_pitch\"\ntitle = \"" + title + "\"\n\n[noise]\n";
-    for (const auto& [name, sigma] : data.noise) {
-        text += name + " = \"" + core::format_number(sigma, 6) + (name == "gap" ? " m" : " rad") + "\"\n";
-    }
-    for (const dynamics::MeasuredRun& run : data.runs) {
-        core::write_csv(folder / (run.name + ".csv"), run.table);
-        text += "\n[[run]]\nfile = \"" + run.name + ".csv\"\n";
-    }
-    core::write_file(folder / "dataset.toml", text);
-}
-
 }  // namespace underbody::test

@@ -7,10 +7,11 @@
 
 #include "pitch_rig.h"
 #include "surrogates/discovery/discovery.h"
-#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
+#include "surrogates/discovery/motion/motion_experiment.h"
 #include "surrogates/discovery/residual.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "surrogates/dynamics/simulate/motion_predict.h"
+#include "surrogates/dynamics/simulate/pitch_run.h"
 #include "tests/support/support.h"
 
 namespace underbody::discovery {
@@ -148,13 +149,14 @@ TEST_F(HeavePitchDiscovery, WildReadingsAreNoEffectNoTouchAndNoError) {
     rig.moment = [](const PitchMoment& now) { return 0.015 * std::cos(now.pitch) * now.input; };
     dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 43), fresh = test::pitch_rig_runs(rig, 3, 1043);
     data.motion = "";  // seen from the pitch, which moves by more than its noise without its wild readings too
-    const std::vector<PitchRecord> whole = [&] {
+    const std::vector<MotionRecord> whole = [&] {
         core::Problems problems;
-        return pitch_records(model_, data, {0, 1, 2, 3, 4}, problems);
+        return motion_records(dynamics::heave_pitch_motion(), model_, data, {0, 1, 2, 3, 4}, problems);
     }();
     spoil(data);
     core::Problems problems;
-    const std::vector<PitchRecord> records = pitch_records(model_, data, {0, 1, 2, 3, 4}, problems);
+    const std::vector<MotionRecord> records =
+        motion_records(dynamics::heave_pitch_motion(), model_, data, {0, 1, 2, 3, 4}, problems);
     ASSERT_EQ(records.size(), whole.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
         EXPECT_EQ(records[i].last, whole[i].last) << records[i].name;
@@ -259,22 +261,23 @@ TEST_F(HeavePitchDiscovery, TheLinearFilterOfTheNoiseSearchAgreesWithTheFilter) 
     rig.colour = 0.9;
     const dynamics::Measurements data = test::pitch_rig_runs(rig, 1, 49);
     core::Problems problems;
-    const std::vector<PitchRecord> records = pitch_records(model_, data, {0}, problems);
+    const std::vector<MotionRecord> records =
+        motion_records(dynamics::heave_pitch_motion(), model_, data, {0}, problems);
     dynamics::PitchRun run(model_, data.runs[0], model_.records);
-    PitchNoise noise;
+    MotionNoise noise;
     noise.white = {1e-4, 0, 3e-4, 0};
-    noise.force = 1e-3;
-    noise.moment = 1e-5;
-    const LinearPitchRun about = linear_pitch(run, records[0], noise);
+    noise.load[0] = 1e-3;
+    noise.load[1] = 1e-5;
+    const LinearMotionRun about = linear_motion(run, records[0], noise);
     std::vector<double> innovations;
     EXPECT_NEAR(linear_cost(about, noise), about.cost, 0.3) << "at the noise of the path only its bends differ";
     for (const double slow : {0.0, 1.5e-4}) {
         for (const double force : {3e-4, 5e-3}) {
-            PitchNoise other = noise;
-            other.gap_slow = slow;
-            other.pitch_slow = 2 * slow;
-            other.force = force;
-            const double exact = filter_pitch(run, records[0], other, innovations);
+            MotionNoise other = noise;
+            other.slow[0] = slow;
+            other.slow[2] = 2 * slow;
+            other.load[0] = force;
+            const double exact = filter_motion(run, records[0], other, innovations);
             const double scale = std::abs(exact - about.cost);
             EXPECT_GT(scale, 20) << "the noise makes a difference";
             EXPECT_NEAR(linear_cost(about, other), exact, 0.02 * scale + 0.5) << slow << " " << force;
@@ -285,15 +288,16 @@ TEST_F(HeavePitchDiscovery, TheLinearFilterOfTheNoiseSearchAgreesWithTheFilter) 
 TEST_F(HeavePitchDiscovery, LinearAnswersAreThoseOfTheFilter) {
     const dynamics::Measurements data = test::pitch_rig_runs(short_rig(), 1, 48);
     core::Problems problems;
-    const PitchExperiment experiment(model_, data, pitch_records(model_, data, {0}, problems));
-    PitchNoise noise;
+    const MotionExperiment experiment(dynamics::heave_pitch_motion(), model_, data,
+                                      motion_records(dynamics::heave_pitch_motion(), model_, data, {0}, problems));
+    MotionNoise noise;
     noise.white = {2e-4, 1e-3, 5e-4, 1e-2};
-    noise.force = 1e-3;
-    noise.moment = 1e-5;
+    noise.load[0] = 1e-3;
+    noise.load[1] = 1e-5;
     std::vector<double> base, there;
-    std::vector<PitchTrace> traces;
+    std::vector<MotionTrace> traces;
     experiment.evaluate({}, noise, base, nullptr, &traces);
-    const DesignMatrix linear = experiment.answers(PitchSmooth{1, {}, {}}, traces);
+    const DesignMatrix linear = experiment.answers(MotionSmooth{1, {}, {}}, traces);
     ASSERT_EQ(linear.columns, 1U);
     const double small = 1e-5;
     experiment.evaluate({dynamics::make_use("moment_offset", {{"moment", small}})}, noise, there);

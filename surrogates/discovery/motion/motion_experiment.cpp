@@ -1,4 +1,4 @@
-#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
+#include "surrogates/discovery/motion/motion_experiment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,9 @@
 #include "core/counted.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "surrogates/dynamics/plant/contact_gap.h"
-#include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "surrogates/dynamics/simulate/motion_predict.h"
 
 namespace underbody::discovery {
-
-using dynamics::pitch_states;
 
 namespace {
 
@@ -25,25 +22,26 @@ dynamics::Model with_all(const dynamics::Model& model, const std::vector<dynamic
 }
 
 /// The variable's value in the middle of a step.
-double value_of(const std::string& variable, const PitchTrace& trace, std::size_t k) {
-    const PitchTrace::Column& x = trace.state[k];
-    return variable == "gap"              ? x[0]
-           : variable == "heave_velocity" ? x[1]
-           : variable == "pitch"          ? x[2]
-           : variable == "pitch_rate"     ? x[3]
-                                          : static_cast<double>(k);  // time
+double value_of(const dynamics::MotionShape& shape, const std::string& variable, const MotionTrace& trace,
+                std::size_t k) {
+    for (const dynamics::MotionShape::Variable& one : shape.variables) {
+        if (one.quantity == variable) {
+            return trace.state[k][one.state];
+        }
+    }
+    return static_cast<double>(k);  // time
 }
 
 }  // namespace
 
-PitchExperiment::PitchExperiment(const dynamics::Model& model, const dynamics::Measurements& data,
-                                 std::vector<PitchRecord> records)
-    : model_(model), data_(data), records_(std::move(records)), reading_(model.records) {}
+MotionExperiment::MotionExperiment(const dynamics::Motion& motion, const dynamics::Model& model,
+                                   const dynamics::Measurements& data, std::vector<MotionRecord> records)
+    : motion_(motion), model_(model), data_(data), records_(std::move(records)), reading_(model.records) {}
 
-std::size_t PitchExperiment::readings() const {
+std::size_t MotionExperiment::readings() const {
     std::size_t count = 0;
-    for (const PitchRecord& record : records_) {
-        for (const std::vector<double>& values : record.value) {
+    for (const MotionRecord& record : records_) {
+        for (const std::vector<double>& values : record.readings.value) {
             for (std::size_t k = record.first; !values.empty() && k <= record.last; ++k) {
                 count += std::isfinite(values[k]) ? 1 : 0;
             }
@@ -52,36 +50,38 @@ std::size_t PitchExperiment::readings() const {
     return count;
 }
 
-std::vector<std::size_t> PitchExperiment::begins() const {
+std::vector<std::size_t> MotionExperiment::begins() const {
     std::vector<std::size_t> begin{0};
-    for (const PitchRecord& record : records_) {
-        const auto channels = static_cast<std::size_t>(std::count_if(
-            record.value.begin(), record.value.end(), [](const auto& values) { return !values.empty(); }));
+    for (const MotionRecord& record : records_) {
+        const auto channels =
+            static_cast<std::size_t>(std::count_if(record.readings.value.begin(), record.readings.value.end(),
+                                                   [](const auto& values) { return !values.empty(); }));
         begin.push_back(begin.back() + channels * (record.last - record.first + 1));
     }
     return begin;
 }
 
-std::vector<std::size_t> PitchExperiment::channels() const {
+std::vector<std::size_t> MotionExperiment::channels() const {
     std::vector<std::size_t> list;
-    for (std::size_t i = 0; i < pitch_states; ++i) {
-        if (std::any_of(records_.begin(), records_.end(), [&](const auto& r) { return !r.value[i].empty(); })) {
+    for (std::size_t i = 0; i < shape().states.size(); ++i) {
+        if (std::any_of(records_.begin(), records_.end(),
+                        [&](const auto& r) { return !r.readings.value[i].empty(); })) {
             list.push_back(i);
         }
     }
     return list;
 }
 
-double PitchExperiment::evaluate(const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
-                                 std::vector<double>& innovations, std::vector<double>* by_record,
-                                 std::vector<PitchTrace>* traces) const {
+double MotionExperiment::evaluate(const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,
+                                  std::vector<double>& innovations, std::vector<double>* by_record,
+                                  std::vector<MotionTrace>* traces) const {
     innovations.clear();
     const dynamics::Model changed = with_all(model_, uses);
     double cost = 0;
-    for (const PitchRecord& record : records_) {
-        dynamics::PitchRun run(changed, data_.runs[record.run], reading_);
-        PitchTrace* const trace = traces != nullptr ? &traces->emplace_back() : nullptr;
-        const double own = filter_pitch(run, record, noise, innovations, trace);
+    for (const MotionRecord& record : records_) {
+        const auto run = motion_.run(changed, data_.runs[record.run], reading_);
+        MotionTrace* const trace = traces != nullptr ? &traces->emplace_back() : nullptr;
+        const double own = filter_motion(*run, record, noise, innovations, trace);
         if (by_record != nullptr) {
             by_record->push_back(own);
         }
@@ -91,16 +91,16 @@ double PitchExperiment::evaluate(const std::vector<dynamics::EffectUse>& uses, c
     return cost;
 }
 
-double PitchExperiment::cost_of(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
-                                const PitchNoise& noise) const {
+double MotionExperiment::cost_of(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
+                                 const MotionNoise& noise) const {
     const dynamics::Model changed = with_all(model_, uses);
     std::vector<double> costs(chosen.size());
     core::parallel_for(chosen.size(), [&](std::size_t i) {
-        const PitchRecord& record = records_[chosen[i]];
+        const MotionRecord& record = records_[chosen[i]];
         std::vector<double> innovations;
         try {
-            dynamics::PitchRun run(changed, data_.runs[record.run], reading_);
-            costs[i] = filter_pitch(run, record, noise, innovations);
+            const auto run = motion_.run(changed, data_.runs[record.run], reading_);
+            costs[i] = filter_motion(*run, record, noise, innovations);
         } catch (const core::Error&) {
             costs[i] = 1e300;
         }
@@ -108,14 +108,14 @@ double PitchExperiment::cost_of(const std::vector<std::size_t>& chosen, const st
     return std::accumulate(costs.begin(), costs.end(), 0.0);
 }
 
-std::vector<LinearPitchRun> PitchExperiment::linear_runs(const std::vector<dynamics::EffectUse>& uses,
-                                                         const PitchNoise& noise) const {
+std::vector<LinearMotionRun> MotionExperiment::linear_runs(const std::vector<dynamics::EffectUse>& uses,
+                                                           const MotionNoise& noise) const {
     const dynamics::Model changed = with_all(model_, uses);
-    std::vector<LinearPitchRun> runs(records_.size());
+    std::vector<LinearMotionRun> runs(records_.size());
     core::parallel_for(runs.size(), [&](std::size_t i) {
         try {
-            dynamics::PitchRun run(changed, data_.runs[records_[i].run], reading_);
-            runs[i] = linear_pitch(run, records_[i], noise);
+            const auto run = motion_.run(changed, data_.runs[records_[i].run], reading_);
+            runs[i] = linear_motion(*run, records_[i], noise);
         } catch (const core::Error&) {
             runs[i].cost = 1e300;
         }
@@ -124,15 +124,15 @@ std::vector<LinearPitchRun> PitchExperiment::linear_runs(const std::vector<dynam
 }
 
 /// The path is the filter's at the noise that the search begins with, and once more at what it finds.
-double PitchExperiment::search(const std::vector<dynamics::EffectUse>& uses, const Numbers& numbers,
-                               const std::vector<std::size_t>& white, PitchNoise& noise) const {
+double MotionExperiment::search(const std::vector<dynamics::EffectUse>& uses, const Numbers& numbers,
+                                MotionNoise& noise) const {
     constexpr int rounds = 3;  // the last only judges
     double least = 1e301, factor = 3;
-    PitchNoise there = noise;
+    MotionNoise there = noise;
     for (int round = 0; round < rounds; ++round) {
-        const std::vector<LinearPitchRun> runs = linear_runs(uses, there);
+        const std::vector<LinearMotionRun> runs = linear_runs(uses, there);
         const double cost = std::accumulate(runs.begin(), runs.end(), 0.0,
-                                            [](double sum, const LinearPitchRun& run) { return sum + run.cost; });
+                                            [](double sum, const LinearMotionRun& run) { return sum + run.cost; });
         const bool better = cost < least - 0.5;
         if (cost < least) {
             least = cost;
@@ -141,32 +141,29 @@ double PitchExperiment::search(const std::vector<dynamics::EffectUse>& uses, con
         if (!better || cost >= 1e300 || round + 1 == rounds) {
             break;
         }
-        search_about(runs, numbers, white, there, factor);
+        search_about(runs, numbers, there, factor);
         factor = std::sqrt(factor);
     }
     return least;
 }
 
-void PitchExperiment::search_about(const std::vector<LinearPitchRun>& runs, const Numbers& numbers,
-                                   const std::vector<std::size_t>& white, PitchNoise& noise, double factor) const {
+void MotionExperiment::search_about(const std::vector<LinearMotionRun>& runs, const Numbers& numbers,
+                                    MotionNoise& noise, double factor) const {
     constexpr double finest = 1.12, enough = 0.5;
-    const auto number = [&](PitchNoise& of, std::size_t j) -> double& {
-        return j < numbers.size() ? of.*numbers[j] : of.white[white[j - numbers.size()]];
-    };
-    const auto cost_of = [&](const PitchNoise& of) {
+    const auto cost_of = [&](const MotionNoise& of) {
         std::vector<double> costs(runs.size());
         core::parallel_for(runs.size(), [&](std::size_t i) { costs[i] = linear_cost(runs[i], of); });
         return std::accumulate(costs.begin(), costs.end(), 0.0);
     };
     double best = cost_of(noise);
-    std::vector<double> last(numbers.size() + white.size(), 1);  // direction that helped
+    std::vector<double> last(numbers.size(), 1);  // direction that helped
     while (factor > finest) {
         const double before = best;
         for (std::size_t j = 0; j < last.size(); ++j) {
             const double way = last[j];
             for (const double direction : {way, -way}) {
-                PitchNoise there = noise;
-                number(there, j) *= std::pow(factor, direction);
+                MotionNoise there = noise;
+                numbers[j](there) *= std::pow(factor, direction);
                 const double cost = cost_of(there);
                 if (cost < best) {
                     best = cost;
@@ -180,27 +177,57 @@ void PitchExperiment::search_about(const std::vector<LinearPitchRun>& runs, cons
     }
 }
 
-double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, PitchNoise& noise) const {
-    const Numbers process{&PitchNoise::force, &PitchNoise::moment};
-    const PitchNoise first = noise;
-    const double white = search(uses, process, channels(), noise);
-    constexpr double clearly = 12;  // -2 log likelihood that coloured noise has to win, for three numbers
-    PitchNoise best = noise;
+MotionExperiment::Numbers MotionExperiment::process_numbers() const {
+    Numbers numbers;
+    for (std::size_t l = 0; l < shape().loads.size(); ++l) {
+        numbers.emplace_back([l](MotionNoise& noise) -> double& { return noise.load[l]; });
+    }
+    return numbers;
+}
+
+MotionExperiment::Numbers MotionExperiment::white_numbers() const {
+    Numbers numbers;
+    for (const std::size_t i : channels()) {
+        numbers.emplace_back([i](MotionNoise& noise) -> double& { return noise.white[i]; });
+    }
+    return numbers;
+}
+
+double MotionExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, MotionNoise& noise) const {
+    const auto with_white = [&](Numbers numbers) {
+        const Numbers white = white_numbers();
+        numbers.insert(numbers.end(), white.begin(), white.end());
+        return numbers;
+    };
+    const MotionNoise first = noise;
+    const double white = search(uses, with_white(process_numbers()), noise);
+    constexpr double clearly = 12;  // -2 log likelihood that coloured noise has to win, for its numbers
+    MotionNoise best = noise;
     double least = white - clearly;
+    Numbers numbers;
+    for (const std::size_t i : channels()) {
+        if (shape().is_place(i)) {
+            numbers.emplace_back([i](MotionNoise& of) -> double& { return of.slow[i]; });
+        }
+    }
+    numbers.emplace_back([](MotionNoise& of) -> double& { return of.slow_time; });
+    const Numbers process = process_numbers();
+    numbers.insert(numbers.end(), process.begin(), process.end());
+    numbers = with_white(numbers);
     for (const double time : {0.05, 0.2, 1.0}) {
-        // from where the search began: white noise alone has made force and moment of the colour
-        PitchNoise coloured = first;
+        // from where the search began: white noise alone has made loads of the colour
+        MotionNoise coloured = first;
         coloured.slow_time = time;
-        coloured.gap_slow = first.white[0];
-        coloured.pitch_slow = first.white[2];
-        coloured.white[0] *= 0.4;
-        coloured.white[2] *= 0.4;
-        coloured.force *= 0.1;
-        coloured.moment *= 0.1;
-        const double cost = search(uses,
-                                   {&PitchNoise::gap_slow, &PitchNoise::pitch_slow, &PitchNoise::slow_time,
-                                    &PitchNoise::force, &PitchNoise::moment},
-                                   channels(), coloured);
+        for (const std::size_t i : channels()) {
+            if (shape().is_place(i)) {
+                coloured.slow[i] = first.white[i];
+                coloured.white[i] *= 0.4;
+            }
+        }
+        for (double& load : coloured.load) {
+            load *= 0.1;
+        }
+        const double cost = search(uses, numbers, coloured);
         if (cost < least) {
             least = cost;
             best = coloured;
@@ -210,13 +237,13 @@ double PitchExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, 
     return fit_process(uses, noise);
 }
 
-double PitchExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses, PitchNoise& noise) const {
-    return search(uses, {&PitchNoise::force, &PitchNoise::moment}, {}, noise);
+double MotionExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses, MotionNoise& noise) const {
+    return search(uses, process_numbers(), noise);
 }
 
-PitchExperiment::Result PitchExperiment::fit(const Hypothesis& hypothesis,
-                                             const std::vector<std::vector<double>>& starts,
-                                             const PitchNoise& begin) const {
+MotionExperiment::Result MotionExperiment::fit(const Hypothesis& hypothesis,
+                                               const std::vector<std::vector<double>>& starts,
+                                               const MotionNoise& begin) const {
     Result result;
     result.noise = begin;
     FittedHypothesis& fitted = result.fitted;
@@ -255,12 +282,15 @@ PitchExperiment::Result PitchExperiment::fit(const Hypothesis& hypothesis,
         for (std::size_t j = 0; j < fitted.fit.parameters.size(); ++j) {
             fitted.hypothesis.parameters[j].start = fitted.fit.parameters[j];
         }
-        const PitchNoise before = result.noise;
+        const MotionNoise before = result.noise;
         if (round < 2) {
             fit_process(hypothesis.with(fitted.fit.parameters), result.noise);
         }
-        const auto same = [](double a, double b) { return std::abs(std::log(a / b)) < 0.25; };
-        if (same(before.force, result.noise.force) && same(before.moment, result.noise.moment)) {
+        bool same = true;
+        for (std::size_t l = 0; l < shape().loads.size(); ++l) {
+            same = same && std::abs(std::log(before.load[l] / result.noise.load[l])) < 0.25;
+        }
+        if (same) {
             break;
         }
     }
@@ -273,9 +303,9 @@ PitchExperiment::Result PitchExperiment::fit(const Hypothesis& hypothesis,
     return result;
 }
 
-DesignMatrix PitchExperiment::answers(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& steps,
-                                      const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
-                                      const std::vector<double>& innovations) const {
+DesignMatrix MotionExperiment::answers(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& steps,
+                                       const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,
+                                       const std::vector<double>& innovations) const {
     DesignMatrix matrix;
     matrix.rows = innovations.size();
     std::vector<double> there;
@@ -293,12 +323,12 @@ DesignMatrix PitchExperiment::answers(const Hypothesis& hypothesis, const std::v
     return matrix;
 }
 
-DesignMatrix PitchExperiment::answers(const PitchSmooth& smooth, const std::vector<PitchTrace>& traces) const {
+DesignMatrix MotionExperiment::answers(const MotionSmooth& smooth, const std::vector<MotionTrace>& traces) const {
     std::vector<std::vector<double>> values(smooth.variables.size());
     for (std::size_t v = 0; v < values.size(); ++v) {
-        for (const PitchTrace& trace : traces) {
+        for (const MotionTrace& trace : traces) {
             for (std::size_t k = 0; k < trace.state.size(); ++k) {
-                values[v].push_back(value_of(smooth.variables[v], trace, k));
+                values[v].push_back(value_of(shape(), smooth.variables[v], trace, k));
             }
         }
     }
@@ -307,7 +337,7 @@ DesignMatrix PitchExperiment::answers(const PitchSmooth& smooth, const std::vect
     matrix.rows = begins().back();
     matrix.columns = basis.columns();
     std::size_t samples = 0;
-    for (const PitchTrace& trace : traces) {
+    for (const MotionTrace& trace : traces) {
         samples += trace.state.size();
     }
     std::vector<std::vector<double>> loads(matrix.columns);
@@ -328,54 +358,41 @@ DesignMatrix PitchExperiment::answers(const PitchSmooth& smooth, const std::vect
                 loads[c].begin() + static_cast<std::ptrdiff_t>(from),
                 loads[c].begin() + static_cast<std::ptrdiff_t>(from + traces[r].state.size()));
             from += traces[r].state.size();
-            linear_answer(traces[r], records_[r], smooth.axis, own, matrix.values);
+            linear_answer(shape(), traces[r], records_[r], smooth.axis, own, matrix.values);
         }
     }
     return matrix;
 }
 
-std::vector<PitchRecord> pitch_records(const dynamics::Model& model, const dynamics::Measurements& data,
-                                       const std::vector<std::size_t>& runs, core::Problems& problems) {
-    constexpr double near_ground = 3;  // standard deviations of the lower edge's reading
+std::vector<MotionRecord> motion_records(const dynamics::Motion& motion, const dynamics::Model& model,
+                                         const dynamics::Measurements& data, const std::vector<std::size_t>& runs,
+                                         core::Problems& problems) {
     constexpr std::size_t least_rows = 50;
-    std::vector<PitchRecord> records;
-    const double contact = dynamics::contact_gap(model), half_length = model.vehicle.base_half_length;
+    std::vector<MotionRecord> records;
     for (const std::size_t r : runs) {
         const dynamics::MeasuredRun& run = data.runs[r];
-        PitchRecord record;
-        record.run = r;
-        record.name = run.name;
-        dynamics::PitchRun measured(model, run, model.records);
+        const auto measured = motion.run(model, run, model.records);
         const core::Place place{run.file.string(), {}, {}, {}};
-        for (const std::string& text : measured.clean_readings(run.name, dynamics::lift_gap_range(model))) {
+        for (const std::string& text : measured->clean_readings(run.name, model)) {
             problems.push_back({core::Problem::Severity::warning, text, place});
         }
-        record.value = measured.readings().value;
-        const std::array<double, pitch_states> noise = dynamics::pitch_noise(data, run);
-        const std::size_t rows = run.table.rows();
-        std::size_t end = 0;
-        for (; end < rows; ++end) {
-            const double edge = record.value[0][end] - contact - half_length * std::abs(std::sin(record.value[2][end]));
-            if (edge < near_ground * std::hypot(noise[0], half_length * noise[2])) {
-                break;
-            }
-        }
+        measured->set_noise(dynamics::motion_noise(motion.shape(), data, run));
+        const std::size_t end = measured->free_rows();
         if (end < least_rows) {
             problems.push_back({core::Problem::Severity::warning,
-                                "run " + run.name + " has only " + core::counted(end, "row") +
-                                    " before it touches the ground or ends: not used",
+                                "run " + run.name + " has only " + core::counted(end, "row") + " before it " +
+                                    motion.shape().end_of_free + " or ends: not used",
                                 place});
             continue;
         }
-        if (end < rows) {
+        if (end < run.table.rows()) {
             problems.push_back({core::Problem::Severity::warning,
                                 "run " + run.name + " is fitted up to " +
-                                    core::format_number(run.table.numbers("time")[end], 5) +
-                                    " s: there an edge of the base comes to the ground",
+                                    core::format_number(run.table.numbers("time")[end], 5) + " s: there it " +
+                                    motion.shape().end_of_free,
                                 place});
         }
-        record.last = end - 1;
-        records.push_back(std::move(record));
+        records.push_back({r, run.name, 0, end - 1, measured->readings()});
     }
     return records;
 }

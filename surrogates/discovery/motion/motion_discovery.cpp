@@ -1,11 +1,11 @@
-// Closing the loop with runs of heave and pitch: the declared model inside the experiment.
+// Closing the loop with runs of a coupled motion: the declared model inside the experiment.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/parallel.h"
 #include "core/text.h"
-#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/run_split.h"
 #include "surrogates/discovery/statistics.h"
 
@@ -27,16 +27,17 @@ bool out_of_reach(const Hypothesis& hypothesis, const dynamics::Model& model) {
 
 }  // namespace
 
-PitchLoop::PitchLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
-                     core::Progress& progress)
-    : model_(model),
+MotionLoop::MotionLoop(const dynamics::Motion& motion, const dynamics::Model& model, const dynamics::Measurements& data,
+                       const DiscoverOptions& options, core::Progress& progress)
+    : motion_(motion),
+      model_(model),
       data_(data),
       options_(options),
       progress_(progress),
       calibration_(heave_calibration(options.constants)) {}
 
-Discovery PitchLoop::run() {
-    result_.motion = "heave_pitch";
+Discovery MotionLoop::run() {
+    result_.motion = shape().name;
     split();
     progress_.report(0.02, "noise");
     fit_null();
@@ -60,65 +61,63 @@ Discovery PitchLoop::run() {
     return std::move(result_);
 }
 
-void PitchLoop::warn(const std::string& text) {
+void MotionLoop::warn(const std::string& text) {
     result_.problems.push_back(
         {core::Problem::Severity::warning, text, core::Place{data_.folder.string(), {}, {}, {}}});
 }
 
-void PitchLoop::split() {
+void MotionLoop::split() {
     std::vector<std::size_t> all(data_.runs.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    std::vector<PitchRecord> records = pitch_records(model_, data_, all, result_.problems);
+    std::vector<MotionRecord> records = motion_records(motion_, model_, data_, all, result_.problems);
     if (records.empty()) {
-        throw core::InputError("range", "no run of heave with pitch is long enough away from the ground",
-                               core::Place{data_.folder.string(), {}, {}, {}}, "50 rows at least before contact");
+        throw core::InputError("range", "no run of " + shape().words + " is long enough",
+                               core::Place{data_.folder.string(), {}, {}, {}},
+                               "50 rows at least before it " + shape().end_of_free);
     }
     std::vector<std::size_t> run_of;
-    for (const PitchRecord& record : records) {
+    for (const MotionRecord& record : records) {
         run_of.push_back(record.run);
     }
     const RunSplit split = split_runs(data_, run_of, options_.seed);
     result_.held_out = split.held_out;
     result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
     test_data_ = held_out_data(split, data_, run_of);
-    test_data_.motion = "heave_pitch";
-    std::vector<PitchRecord> train;
+    test_data_.motion = shape().name;
+    std::vector<MotionRecord> train;
     for (const std::size_t i : split.train) {
         train.push_back(std::move(records[i]));
     }
-    experiment_.emplace(model_, data_, std::move(train));
+    experiment_.emplace(motion_, model_, data_, std::move(train));
     channels_ = experiment_->channels();
-    input_recorded_ = std::any_of(data_.runs.begin(), data_.runs.end(), [](const dynamics::MeasuredRun& run) {
-        const core::Column* column = run.table.find("input_force");
-        return column != nullptr && !column->is_text() && !column->numbers.empty() &&
-               *std::max_element(column->numbers.begin(), column->numbers.end()) >
-                   *std::min_element(column->numbers.begin(), column->numbers.end());
-    });
+    input_recorded_ = std::any_of(data_.runs.begin(), data_.runs.end(),
+                                  [&](const dynamics::MeasuredRun& run) { return motion_.driven(model_, run); });
 }
 
-/// Of the sensors as declared or as the readings scatter; of force and moment a little.
-PitchNoise PitchLoop::noise_at_first() const {
-    PitchNoise noise;
+/// Of the sensors as declared or as the readings scatter; of the loads a little.
+MotionNoise MotionLoop::noise_at_first() const {
+    MotionNoise noise;
     for (const std::size_t i : channels_) {
         std::vector<double> own;
-        for (const PitchRecord& record : experiment_->records()) {
-            own.push_back(std::max(dynamics::pitch_noise(data_, data_.runs[record.run])[i], 1e-7));
+        for (const MotionRecord& record : experiment_->records()) {
+            own.push_back(std::max(dynamics::motion_noise(shape(), data_, data_.runs[record.run])[i], 1e-7));
         }
         noise.white[i] = median(own);
     }
-    const dynamics::PitchRun first(model_, data_.runs[experiment_->records().front().run], model_.records);
-    noise.force = 0.002 * first.plant().mass();
-    noise.moment = 0.02 * first.plant().inertia();
+    const auto first = motion_.run(model_, data_.runs[experiment_->records().front().run], model_.records);
+    for (std::size_t l = 0; l < shape().loads.size(); ++l) {
+        noise.load[l] = shape().loads[l].process * first->inertia(l);
+    }
     return noise;
 }
 
-void PitchLoop::fit_null() {
-    PitchNoise noise = noise_at_first();
+void MotionLoop::fit_null() {
+    MotionNoise noise = noise_at_first();
     experiment_->fit_noise({}, noise);
     set_null(noise);
 }
 
-void PitchLoop::set_null(const PitchNoise& noise) {
+void MotionLoop::set_null(const MotionNoise& noise) {
     null_noise_ = noise;
     null_by_record_.clear();
     null_cost_ = experiment_->evaluate({}, null_noise_, null_innovations_, &null_by_record_);
@@ -126,24 +125,25 @@ void PitchLoop::set_null(const PitchNoise& noise) {
 
 /// Is the recorded input held from sample to sample, or linear between? Asked of the data only where the model does not
 /// say.
-void PitchLoop::try_between() {
+void MotionLoop::try_between() {
     using Between = dynamics::RecordReading::Between;
     if (model_.records.input_between != Between::unsaid || !input_recorded_) {
         return;
     }
-    const PitchNoise noise = null_noise_;
+    const MotionNoise noise = null_noise_;
     const double held = null_cost_;
     experiment_->read_input(Between::linear);
-    PitchNoise other = null_noise_;
+    MotionNoise other = null_noise_;
     const double linear = experiment_->fit_process({}, other);
     const Between found = dynamics::between_samples(Between::unsaid, held, linear);
     experiment_->read_input(found);
     set_null(found == Between::linear ? other : noise);
 }
 
-void PitchLoop::list_candidates() {
+void MotionLoop::list_candidates() {
     std::vector<dynamics::Channel> varying;
-    if (input_recorded_) {
+    if (std::any_of(data_.runs.begin(), data_.runs.end(),
+                    [](const dynamics::MeasuredRun& run) { return dynamics::column_moves(run, "input_force"); })) {
         varying.push_back(dynamics::Channel::input_force);
     }
     for (std::size_t c = 0; c < dynamics::channel_count; ++c) {
@@ -160,16 +160,17 @@ void PitchLoop::list_candidates() {
             varying.push_back(channel);
         }
     }
-    candidates_ = heave_pitch_hypotheses(model_, varying);
+    candidates_ = motion_hypotheses(shape(), model_, varying);
     std::erase_if(candidates_, [&](const Hypothesis& one) {
         return out_of_reach(one, model_) || (!input_recorded_ && touch_of(one, model_).input);
     });
     keep_only(candidates_, options_.candidates);
 }
 
-PitchExperiment::Result PitchLoop::fitted(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& starts,
-                                          const PitchNoise& begin) const {
-    PitchExperiment::Result result = experiment_->fit(hypothesis, starts, begin);
+MotionExperiment::Result MotionLoop::fitted(const Hypothesis& hypothesis,
+                                            const std::vector<std::vector<double>>& starts,
+                                            const MotionNoise& begin) const {
+    MotionExperiment::Result result = experiment_->fit(hypothesis, starts, begin);
     FittedHypothesis& one = result.fitted;
     one.explained = null_cost_ - one.cost;
     const FitParameter& chief = hypothesis.parameters.front();
@@ -184,14 +185,14 @@ PitchExperiment::Result PitchLoop::fitted(const Hypothesis& hypothesis, const st
 }
 
 /// The effects that promise most to first order are fitted; then whatever promises more than the best of these gives.
-void PitchLoop::fit_singles() {
+void MotionLoop::fit_singles() {
     constexpr std::size_t at_first = 8;
     constexpr double within = 12;  // -2 log likelihood
     probes_ = probes({}, null_noise_, {});
     candidate_of_.clear();
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < probes_.size(); ++k) {
-        if (probes_[k].smooth == nullptr) {
+        if (!probes_[k].smooth) {
             order.push_back(k);
         }
     }
@@ -210,7 +211,7 @@ void PitchLoop::fit_singles() {
                 if (!probe.numbers.empty()) {
                     starts.push_back(probe.numbers);
                 }
-                PitchExperiment::Result result = fitted(candidates_[probe.candidate], starts, null_noise_);
+                MotionExperiment::Result result = fitted(candidates_[probe.candidate], starts, null_noise_);
                 fitted_[first + k] = std::move(result.fitted);
                 noises_[first + k] = result.noise;
             },
@@ -230,13 +231,13 @@ void PitchLoop::fit_singles() {
 
 /// Coloured sensor noise would pass for an effect, and an effect for coloured noise: it was looked for beside the
 /// declared model, now beside the best explanation; if the answer is another one, everything is judged again.
-void PitchLoop::colour_noise() {
+void MotionLoop::colour_noise() {
     constexpr double other = 1.3;  // times as much noise of a reading, or as little
-    if (fitted_.empty() || (null_noise_.gap_slow == 0 && null_noise_.pitch_slow == 0)) {
+    if (fitted_.empty() || !null_noise_.coloured()) {
         return;
     }
     const FittedHypothesis& best = fitted_[best_single_];
-    PitchNoise noise = noise_at_first();
+    MotionNoise noise = noise_at_first();
     experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise);
     const bool changed = std::any_of(channels_.begin(), channels_.end(), [&](std::size_t i) {
         const double ratio = noise.total(i) / null_noise_.total(i);
@@ -249,9 +250,10 @@ void PitchLoop::colour_noise() {
     }
 }
 
-Discovery discover_heave_pitch(const dynamics::Model& model, const dynamics::Measurements& data,
-                               const DiscoverOptions& options, core::Progress& progress) {
-    return PitchLoop(model, data, options, progress).run();
+Discovery discover_motion(const dynamics::Motion& motion, const dynamics::Model& model,
+                          const dynamics::Measurements& data, const DiscoverOptions& options,
+                          core::Progress& progress) {
+    return MotionLoop(motion, model, data, options, progress).run();
 }
 
 }  // namespace underbody::discovery

@@ -6,13 +6,11 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
-
-using dynamics::pitch_states;
 
 namespace {
 
@@ -29,8 +27,8 @@ void add(WindowSquares& windows, std::size_t run, const std::vector<double>& err
 
 /// Noise of a sensor over samples at these times: white, and coloured where there is any.
 std::vector<double> drawn_noise(const std::vector<double>& time, std::size_t from, std::size_t end,
-                                const PitchNoise& noise, std::size_t state, core::Random& random) {
-    const double slow = state == 0 ? noise.gap_slow : state == 2 ? noise.pitch_slow : 0;
+                                const MotionNoise& noise, std::size_t state, core::Random& random) {
+    const double slow = noise.slow[state];
     double coloured = slow * random.normal();
     std::vector<double> out;
     for (std::size_t k = from; k <= end; ++k) {
@@ -45,7 +43,7 @@ std::vector<double> drawn_noise(const std::vector<double>& time, std::size_t fro
 
 }  // namespace
 
-dynamics::Model PitchLoop::model_with(const std::vector<dynamics::EffectUse>& uses) const {
+dynamics::Model MotionLoop::model_with(const std::vector<dynamics::EffectUse>& uses) const {
     dynamics::Model model = model_;
     model.records = experiment_->reading();
     for (const dynamics::EffectUse& use : uses) {
@@ -54,16 +52,16 @@ dynamics::Model PitchLoop::model_with(const std::vector<dynamics::EffectUse>& us
     return model;
 }
 
-PitchLoop::Answer PitchLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const {
+MotionLoop::Answer MotionLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const {
     Answer answer;
     answer.uses = uses;
     dynamics::PredictOptions options;
     options.horizon = horizon;
-    answer.runs = dynamics::predict_pitch_runs(model_with(uses), test_data_, options, progress_);
+    answer.runs = dynamics::predict_motion_runs(motion_, model_with(uses), test_data_, options, progress_);
     answer.windows.resize(channels_.size());
     for (std::size_t r = 0; r < answer.runs.size(); ++r) {
-        dynamics::PitchRun& run = *answer.runs[r].run;
-        for (const dynamics::PitchWindow& window : answer.runs[r].windows) {
+        dynamics::MeasuredMotion& run = *answer.runs[r].run;
+        for (const dynamics::MotionWindow& window : answer.runs[r].windows) {
             std::vector<double> together;
             for (std::size_t c = 0; c < channels_.size(); ++c) {
                 const std::vector<double>& read = run.readings().value[channels_[c]];
@@ -82,14 +80,14 @@ PitchLoop::Answer PitchLoop::answer_of(const std::vector<dynamics::EffectUse>& u
     return answer;
 }
 
-bool PitchLoop::falls(const Answer& before, const Answer& after) const {
+bool MotionLoop::falls(const Answer& before, const Answer& after) const {
     const std::size_t runs = test_data_.runs.size();
     return paired_fall(before.all.blocks(runs, blocks_wanted), after.all.blocks(runs, blocks_wanted),
                        calibration_.fall_tail)
         .falls();
 }
 
-double PitchLoop::Twins::error(std::size_t channel) const {
+double MotionLoop::Twins::error(std::size_t channel) const {
     double sum = 0, draws = 0;
     for (const std::vector<double>& window : square[channel]) {
         sum += std::accumulate(window.begin(), window.end(), 0.0);
@@ -98,7 +96,7 @@ double PitchLoop::Twins::error(std::size_t channel) const {
     return count[channel] > 0 && draws > 0 ? std::sqrt(sum / draws / count[channel]) : 0;
 }
 
-double PitchLoop::Twins::chance(std::size_t channel, double error, std::uint64_t seed) const {
+double MotionLoop::Twins::chance(std::size_t channel, double error, std::uint64_t seed) const {
     constexpr int sets = 4000;
     core::Random random(seed, channel);
     int larger = 0;
@@ -112,7 +110,7 @@ double PitchLoop::Twins::chance(std::size_t channel, double error, std::uint64_t
     return (larger + 1.0) / (sets + 1.0);
 }
 
-PitchLoop::Twins PitchLoop::twins_of(const Answer& answer, std::size_t draws) const {
+MotionLoop::Twins MotionLoop::twins_of(const Answer& answer, std::size_t draws) const {
     using Squares = std::vector<std::vector<double>>;  // by window and draw
     const std::size_t runs = answer.runs.size();
     std::vector<std::vector<Squares>> squares(runs, std::vector<Squares>(channels_.size()));
@@ -120,14 +118,14 @@ PitchLoop::Twins PitchLoop::twins_of(const Answer& answer, std::size_t draws) co
     core::parallel_for(
         runs,
         [&](std::size_t r) {
-            dynamics::PitchRun& run = *answer.runs[r].run;
+            dynamics::MeasuredMotion& run = *answer.runs[r].run;
             core::Random random(options_.seed + 77, r);
-            for (const dynamics::PitchWindow& window : answer.runs[r].windows) {
+            for (const dynamics::MotionWindow& window : answer.runs[r].windows) {
                 for (Squares& own : squares[r]) {
                     own.emplace_back();
                 }
                 for (std::size_t draw = 0; draw < draws; ++draw) {
-                    dynamics::PitchReadings twin = run.readings();
+                    dynamics::MotionReadings twin = run.readings();
                     for (const std::size_t i : channels_) {
                         const std::vector<double> noise =
                             drawn_noise(run.time(), window.from, window.end, null_noise_, i, random);
@@ -141,7 +139,7 @@ PitchLoop::Twins PitchLoop::twins_of(const Answer& answer, std::size_t draws) co
                     if (!state) {
                         continue;
                     }
-                    const std::vector<dynamics::PitchState> motion =
+                    const std::vector<dynamics::MotionState> motion =
                         dynamics::motion_from(run, *state, window.from, window.end);
                     for (std::size_t c = 0; c < channels_.size(); ++c) {
                         const std::vector<double>& read = twin.value[channels_[c]];
@@ -171,7 +169,7 @@ PitchLoop::Twins PitchLoop::twins_of(const Answer& answer, std::size_t draws) co
 
 /// Judged channel by channel: a moment that is missing may leave the gap's error as small as noise. A few windows in
 /// coloured noise differ much from each other: their error is also noise where noise makes it often enough.
-bool PitchLoop::rest_is_noise(const Answer& answer) {
+bool MotionLoop::rest_is_noise(const Answer& answer) {
     const Twins few = twins_of(answer, twins_each);
     std::optional<Twins> many;
     const std::size_t runs = test_data_.runs.size();
@@ -196,7 +194,7 @@ bool PitchLoop::rest_is_noise(const Answer& answer) {
     return noise;
 }
 
-double PitchLoop::share_left(const Answer& declared, const Answer& answer) const {
+double MotionLoop::share_left(const Answer& declared, const Answer& answer) const {
     const Twins twins = twins_of(answer, twins_each);
     const std::size_t runs = test_data_.runs.size();
     double missed = 0, left = 0;
@@ -208,7 +206,7 @@ double PitchLoop::share_left(const Answer& declared, const Answer& answer) const
     return missed > 0 ? std::max(left, 0.0) / missed : 0;
 }
 
-void PitchLoop::decide() {
+void MotionLoop::decide() {
     attribution_ = attribute(fitted_, gate_, rest_.fit, calibration_);
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
@@ -222,7 +220,7 @@ void PitchLoop::decide() {
 
 /// Guards the verdict of the likelihoods: a name needs a held-out error that falls, and a name and "none" a rest that
 /// is noise.
-void PitchLoop::guard() {
+void MotionLoop::guard() {
     const Answer declared = answer_of({}, options_.horizon);
     bool quiet = true;
     if (result_.verdict == "effect") {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/noise_chance.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
@@ -12,22 +12,6 @@
 namespace underbody::discovery {
 
 namespace {
-
-/// Force (axis 0) and moment (axis 1) over every state, over time, and over gap and pitch together.
-const std::vector<PitchSmooth>& smooth_loads() {
-    static const std::vector<PitchSmooth> loads = [] {
-        std::vector<PitchSmooth> list;
-        for (const std::size_t axis : {0U, 1U}) {
-            list.push_back({axis, {}, {}});
-            for (const char* variable : {"gap", "heave_velocity", "pitch", "pitch_rate", "time"}) {
-                list.push_back({axis, {variable}, {6}});
-            }
-            list.push_back({axis, {"gap", "pitch"}, {4, 3}});
-        }
-        return list;
-    }();
-    return loads;
-}
 
 /// Where a candidate is looked at when it is small: one set of numbers for each column.
 std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
@@ -51,10 +35,26 @@ std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
 
 }  // namespace
 
-std::vector<PitchLoop::Probe> PitchLoop::probes(const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
-                                                const DesignMatrix& own) const {
+/// Each load over every variable, over time, and over two variables together.
+std::vector<MotionSmooth> MotionLoop::smooth_loads() const {
+    std::vector<MotionSmooth> list;
+    const std::vector<dynamics::MotionShape::Variable>& variables = shape().variables;
+    for (std::size_t axis = 0; axis < shape().loads.size(); ++axis) {
+        list.push_back({axis, {}, {}});
+        for (const dynamics::MotionShape::Variable& one : variables) {
+            list.push_back({axis, {one.quantity}, {6}});
+        }
+        list.push_back({axis, {"time"}, {6}});
+        const auto& [a, b] = shape().together;
+        list.push_back({axis, {variables[a].quantity, variables[b].quantity}, {4, 3}});
+    }
+    return list;
+}
+
+std::vector<MotionLoop::Probe> MotionLoop::probes(const std::vector<dynamics::EffectUse>& uses,
+                                                  const MotionNoise& noise, const DesignMatrix& own) const {
     std::vector<double> innovations;
-    std::vector<PitchTrace> traces;
+    std::vector<MotionTrace> traces;
     experiment_->evaluate(uses, noise, innovations, nullptr, &traces);
     const DesignMatrix taken = orthonormal(own);
     std::vector<Probe> list;
@@ -67,28 +67,26 @@ std::vector<PitchLoop::Probe> PitchLoop::probes(const std::vector<dynamics::Effe
             list.back().candidate = i;
         }
     }
-    for (const PitchSmooth& load : smooth_loads()) {
+    for (const MotionSmooth& load : smooth_loads()) {
         list.emplace_back();
-        list.back().smooth = &load;
+        list.back().smooth = load;
     }
     core::parallel_for(
         list.size(),
         [&](std::size_t k) {
             Probe& probe = list[k];
             DesignMatrix matrix;
-            const std::vector<std::vector<double>> steps = probe.smooth == nullptr
-                                                               ? small_steps(candidates_[probe.candidate])
-                                                               : std::vector<std::vector<double>>{};
-            matrix = probe.smooth != nullptr
-                         ? experiment_->answers(*probe.smooth, traces)
-                         : experiment_->answers(candidates_[probe.candidate], steps, uses, noise, innovations);
+            const std::vector<std::vector<double>> steps =
+                !probe.smooth ? small_steps(candidates_[probe.candidate]) : std::vector<std::vector<double>>{};
+            matrix = probe.smooth ? experiment_->answers(*probe.smooth, traces)
+                                  : experiment_->answers(candidates_[probe.candidate], steps, uses, noise, innovations);
             if (!std::all_of(matrix.values.begin(), matrix.values.end(), [](double x) { return std::isfinite(x); })) {
                 return;
             }
             probe.columns = orthonormal_beside(taken, matrix);
             probe.gain = explained_square(probe.columns, innovations);
             probe.surprise = surprise(probe.gain, static_cast<double>(probe.columns.columns));
-            if (probe.smooth == nullptr && steps.size() == 1) {
+            if (!probe.smooth && steps.size() == 1) {
                 const FitParameter& p = candidates_[probe.candidate].parameters.front();
                 double jj = 0, jr = 0;
                 for (std::size_t i = 0; i < innovations.size(); ++i) {
@@ -102,14 +100,14 @@ std::vector<PitchLoop::Probe> PitchLoop::probes(const std::vector<dynamics::Effe
     return list;
 }
 
-double PitchLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
-                                  double observed, std::uint64_t stream) const {
+double MotionLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
+                                   double observed, std::uint64_t stream) const {
     std::vector<const DesignMatrix*> columns;
     for (const Probe& probe : list) {
         columns.push_back(&probe.columns);
     }
     double seconds = 0;
-    for (const PitchRecord& record : experiment_->records()) {
+    for (const MotionRecord& record : experiment_->records()) {
         const std::vector<double>& time = data_.runs[record.run].table.numbers("time");
         seconds += time[record.last] - time[record.first];
     }
@@ -117,7 +115,7 @@ double PitchLoop::chance_in_noise(const std::vector<Probe>& list, const std::vec
     return chance_among(columns, noise_like, observed, second, options_.seed + stream, progress_);
 }
 
-void PitchLoop::open_gate() {
+void MotionLoop::open_gate() {
     double observed = 0;
     for (const FittedHypothesis& one : fitted_) {
         observed = std::max(observed, surprise(one.explained, static_cast<double>(one.hypothesis.parameters.size())));
@@ -128,7 +126,7 @@ void PitchLoop::open_gate() {
     const Probe* most = nullptr;
     for (const Probe& probe : probes_) {
         const double price = 9.0 * static_cast<double>(probe.columns.columns);
-        if (probe.smooth != nullptr &&
+        if (probe.smooth &&
             (most == nullptr || probe.gain - price > most->gain - 9.0 * static_cast<double>(most->columns.columns))) {
             most = &probe;
         }
@@ -147,7 +145,7 @@ void PitchLoop::open_gate() {
     whole_.p = gate_;
 }
 
-PitchLoop::Rest PitchLoop::rest_beside(const FittedHypothesis& base, const PitchNoise& noise) const {
+MotionLoop::Rest MotionLoop::rest_beside(const FittedHypothesis& base, const MotionNoise& noise) const {
     const std::vector<dynamics::EffectUse> uses = base.hypothesis.with(base.fit.parameters);
     DesignMatrix own;
     own.rows = base.fit.residuals.size();
@@ -165,7 +163,7 @@ PitchLoop::Rest PitchLoop::rest_beside(const FittedHypothesis& base, const Pitch
     std::vector<const Probe*> second;
     const Probe* most = nullptr;
     for (const Probe& probe : list) {
-        if (probe.smooth == nullptr) {
+        if (!probe.smooth) {
             second.push_back(&probe);
         } else if (most == nullptr || probe.surprise > most->surprise) {
             most = &probe;
@@ -190,7 +188,7 @@ PitchLoop::Rest PitchLoop::rest_beside(const FittedHypothesis& base, const Pitch
 }
 
 /// A second to a fourth effect, one at a time, where the best set so far leaves structure that noise does not make.
-void PitchLoop::fit_further() {
+void MotionLoop::fit_further() {
     constexpr std::size_t tried = 4;
     for (std::size_t count = 2; count <= static_cast<std::size_t>(calibration_.most_effects); ++count) {
         const std::size_t base = best_hypothesis(fitted_, count - 1);
@@ -198,7 +196,7 @@ void PitchLoop::fit_further() {
             return;
         }
         std::vector<FittedHypothesis> found(std::min(tried, rest_.second.size()));
-        std::vector<PitchNoise> noises(found.size());
+        std::vector<MotionNoise> noises(found.size());
         core::parallel_for(
             found.size(),
             [&](std::size_t k) {
@@ -212,7 +210,7 @@ void PitchLoop::fit_further() {
                 }
                 const Hypothesis both =
                     joined(fitted_[base].hypothesis, fitted_[base].hypothesis.start(), next, next.start());
-                PitchExperiment::Result result = fitted(both, starts, noises_[base]);
+                MotionExperiment::Result result = fitted(both, starts, noises_[base]);
                 found[k] = std::move(result.fitted);
                 noises[k] = result.noise;
             },

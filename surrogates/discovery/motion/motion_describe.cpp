@@ -1,10 +1,10 @@
-// What a verdict on heave with pitch is told with: error before and after of each axis, residual loads, consequences.
+// What a verdict on a coupled motion is told with: error before and after of each axis, residual loads, consequences.
 #include <algorithm>
 #include <cmath>
 
 #include "core/text.h"
 #include "surrogates/discovery/consequence.h"
-#include "surrogates/discovery/heave_pitch/pitch_loop.h"
+#include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
@@ -12,7 +12,7 @@
 namespace underbody::discovery {
 
 /// Every measured channel over one and five horizons; the channel whose error falls most, in its noise, first.
-void PitchLoop::measure_error() {
+void MotionLoop::measure_error() {
     const std::size_t runs = test_data_.runs.size();
     double most = -1e300;
     std::size_t chief = 0;
@@ -23,8 +23,8 @@ void PitchLoop::measure_error() {
         }
         for (std::size_t c = 0; c < channels_.size(); ++c) {
             ErrorChange change;
-            change.channel = dynamics::channel_name(dynamics::pitch_channels[channels_[c]]);
-            change.unit = dynamics::channel_unit(dynamics::pitch_channels[channels_[c]]);
+            change.channel = shape().states[channels_[c]].channel;
+            change.unit = shape().states[channels_[c]].unit;
             change.horizon = horizon;
             change.noise = null_noise_.total(channels_[c]);
             const auto estimate = [&](const Answer& answer) {
@@ -53,29 +53,31 @@ void PitchLoop::measure_error() {
     }
 }
 
-/// Force and moment that the model lacks, as declared and as found, over the fitted runs.
-void PitchLoop::measure_axes() {
+/// Loads that the model lacks, as declared and as found, over the fitted runs.
+void MotionLoop::measure_axes() {
     const auto residuals = [&](const std::vector<dynamics::EffectUse>& uses) {
         const dynamics::Model model = model_with(uses);
-        std::array<std::vector<double>, 2> loads, sigmas;
-        for (const PitchRecord& record : experiment_->records()) {
-            dynamics::PitchRun run(model, data_.runs[record.run], model.records);
-            PitchNoise noise = null_noise_;
-            noise.force = noise.moment = 0;
-            walk_of_loads(run.plant(), noise);
-            const SmoothedPitchRun smoothed = smooth_pitch(run, record, noise);
-            loads[0].insert(loads[0].end(), smoothed.force.begin(), smoothed.force.end());
-            loads[1].insert(loads[1].end(), smoothed.moment.begin(), smoothed.moment.end());
-            sigmas[0].insert(sigmas[0].end(), smoothed.force_sigma.begin(), smoothed.force_sigma.end());
-            sigmas[1].insert(sigmas[1].end(), smoothed.moment_sigma.begin(), smoothed.moment_sigma.end());
+        std::vector<std::vector<double>> loads(shape().loads.size()), sigmas(shape().loads.size());
+        for (const MotionRecord& record : experiment_->records()) {
+            const auto run = motion_.run(model, data_.runs[record.run], model.records);
+            MotionNoise noise = null_noise_;
+            noise.load = {};
+            walk_of_loads(*run, noise);
+            const SmoothedMotion smoothed = smooth_motion(*run, record, noise);
+            for (std::size_t l = 0; l < loads.size(); ++l) {
+                for (std::size_t k = 0; k < smoothed.time.size(); ++k) {
+                    loads[l].push_back(smoothed.load[k][l]);
+                    sigmas[l].push_back(smoothed.load_sigma[k][l]);
+                }
+            }
         }
         return std::pair(loads, sigmas);
     };
     const auto before = residuals({}), after = uses_.empty() ? before : residuals(uses_);
-    for (const std::size_t axis : {0U, 1U}) {
+    for (std::size_t axis = 0; axis < shape().loads.size(); ++axis) {
         AxisResidual one;
-        one.quantity = axis == 0 ? "lift_force" : "pitch_moment";
-        one.unit = axis == 0 ? "N" : "N m";
+        one.quantity = shape().loads[axis].quantity;
+        one.unit = shape().loads[axis].unit;
         one.mean_before = mean(before.first[axis]);
         one.rms_before = root_mean_square(before.first[axis]);
         one.mean_after = mean(after.first[axis]);
@@ -86,7 +88,7 @@ void PitchLoop::measure_axes() {
 }
 
 /// Share of resampled runs in which the chosen names have the least score.
-double PitchLoop::stability() const {
+double MotionLoop::stability() const {
     if (result_.verdict != "effect") {
         return result_.verdict == "none" ? result_.none_probability : attribution_.unknown_probability;
     }
@@ -95,7 +97,7 @@ double PitchLoop::stability() const {
     });
 }
 
-Consequence PitchLoop::consequence() const {
+Consequence MotionLoop::consequence() const {
     Consequence found;
     map_if_possible(found, [&] {
         const auto balances = [&](const dynamics::Model& model) {
@@ -107,28 +109,29 @@ Consequence PitchLoop::consequence() const {
                 }
             }
             std::vector<Balance> list;
-            for (const dynamics::HeaveEquilibrium& e : dynamics::HeavePitch(model, held).equilibria()) {
+            for (const dynamics::HeaveEquilibrium& e : motion_.equilibria(model, held)) {
                 list.push_back({e.name, e.stable, e.gap});
             }
             return list;
         };
         found.equilibria = paired(balances(model_), balances(result_.model));
-        found.text = "Equilibria in heave and pitch together, without input; no map of starts is drawn.";
+        found.text = found.equilibria.empty()
+                         ? ""
+                         : "Equilibria in " + shape().words + ", without input; no map of starts is drawn.";
     });
     return found;
 }
 
-void PitchLoop::describe() {
-    const bool coloured = null_noise_.gap_slow > 0 || null_noise_.pitch_slow > 0;
+void MotionLoop::describe() {
     for (const std::size_t i : channels_) {
-        const std::string name = dynamics::channel_name(dynamics::pitch_channels[i]);
+        const std::string name = shape().states[i].channel;
         result_.noise[name] = {
-            null_noise_.total(i), dynamics::channel_unit(dynamics::pitch_channels[i]),
+            null_noise_.total(i), shape().states[i].unit,
             std::string("fitted") + (data_.declared_noise(name) ? ", begun at the declared one" : "") +
-                (coloured && (i == 0 || i == 2)
+                (null_noise_.slow[i] > 0
                      ? ", in part with a correlation time of " + core::format_number(null_noise_.slow_time, 2) + " s"
                      : ""),
-            dynamics::pitch_noise(data_, data_.runs[experiment_->records().front().run])[i]};
+            dynamics::motion_noise(shape(), data_, data_.runs[experiment_->records().front().run])[i]};
     }
     result_.stability = stability();
     tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth load", evidence_of_runs,
@@ -141,12 +144,13 @@ void PitchLoop::describe() {
     result_.next_experiment =
         tied ? "To tell " + result_.effects.front().name + " from " + result_.alternatives.front().name + ": " +
                    result_.alternatives.front().told_apart_by + "."
-             : "No further experiment is designed for heave with pitch; runs at other gaps, pitches and inputs would "
-               "show effects below the limits given here.";
+             : "No further experiment is designed for " + shape().words +
+                   "; runs in other states and with other inputs would show effects below the limits given here.";
     result_.problems.insert(result_.problems.end(), data_.problems.begin(), data_.problems.end());
     result_.problems.push_back({core::Problem::Severity::note,
-                                "heave and pitch together: waves, forces with memory and numbers that differ from run "
-                                "to run are not looked for, and no smooth correction is put into the model",
+                                shape().words +
+                                    ": waves, forces with memory and numbers that differ from run "
+                                    "to run are not looked for, and no smooth correction is put into the model",
                                 core::Place{data_.folder.string(), {}, {}, {}}});
     if (options_.consequence) {
         result_.consequence = consequence();

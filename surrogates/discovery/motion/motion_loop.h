@@ -1,4 +1,5 @@
-// The loop for runs of heave with pitch: from the runs to a verdict, the error before and after of each axis.
+// The loop for runs of a coupled motion, whichever it is: from the runs to a verdict, the error before and after of
+// each axis.
 #pragma once
 
 #include <optional>
@@ -9,44 +10,44 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/heave/heave_error.h"
-#include "surrogates/discovery/heave_pitch/pitch_experiment.h"
-#include "surrogates/dynamics/simulate/pitch_predict.h"
+#include "surrogates/discovery/motion/motion_experiment.h"
+#include "surrogates/dynamics/simulate/motion_predict.h"
 
 namespace underbody::discovery {
 
 /// Runs once. Steps in the order of run(); each leaves its answer in the members that the next ones read.
-class PitchLoop {
+class MotionLoop {
 public:
-    PitchLoop(const dynamics::Model& model, const dynamics::Measurements& data, const DiscoverOptions& options,
-              core::Progress& progress);
+    MotionLoop(const dynamics::Motion& motion, const dynamics::Model& model, const dynamics::Measurements& data,
+               const DiscoverOptions& options, core::Progress& progress);
     Discovery run();
 
 private:
-    // pitch_discovery.cpp: the null model and every effect alone
+    // motion_discovery.cpp: the null model and every effect alone
     void split();
     void fit_null();
-    void set_null(const PitchNoise& noise);
+    void set_null(const MotionNoise& noise);
     void try_between();
     void list_candidates();
-    [[nodiscard]] PitchExperiment::Result fitted(const Hypothesis& hypothesis,
-                                                 const std::vector<std::vector<double>>& starts,
-                                                 const PitchNoise& begin) const;
+    [[nodiscard]] MotionExperiment::Result fitted(const Hypothesis& hypothesis,
+                                                  const std::vector<std::vector<double>>& starts,
+                                                  const MotionNoise& begin) const;
     void fit_singles();
     void colour_noise();
-    [[nodiscard]] PitchNoise noise_at_first() const;
+    [[nodiscard]] MotionNoise noise_at_first() const;
     void warn(const std::string& text);
 
-    // pitch_significance.cpp: is anything there, and is anything left?
+    // motion_significance.cpp: is anything there, and is anything left?
     /// Linearised answers of one thing that may be missing.
     struct Probe {
         std::size_t candidate = 0;  ///< index into candidates_, or:
-        const PitchSmooth* smooth = nullptr;
+        std::optional<MotionSmooth> smooth;
         DesignMatrix columns;         ///< orthonormal, beside what the base can already do
         double gain = 0;              ///< of the base's innovations
         double surprise = 0;          ///< -log10 of the chance of such a gain from white noise
         std::vector<double> numbers;  ///< a candidate's best, to first order
     };
-    [[nodiscard]] std::vector<Probe> probes(const std::vector<dynamics::EffectUse>& uses, const PitchNoise& noise,
+    [[nodiscard]] std::vector<Probe> probes(const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,
                                             const DesignMatrix& own) const;
     [[nodiscard]] double chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
                                          double observed, std::uint64_t stream) const;
@@ -56,14 +57,14 @@ private:
         double share = 0;                 ///< of all structure, that is left
         std::vector<std::size_t> second;  ///< candidates that would explain most beside it, best first
     };
-    [[nodiscard]] Rest rest_beside(const FittedHypothesis& base, const PitchNoise& noise) const;
+    [[nodiscard]] Rest rest_beside(const FittedHypothesis& base, const MotionNoise& noise) const;
     void fit_further();
 
-    // pitch_guards.cpp: what the verdict may say
+    // motion_guards.cpp: what the verdict may say
     /// What a model predicts of the held-out runs.
     struct Answer {
         std::vector<dynamics::EffectUse> uses;
-        std::vector<dynamics::PitchRunPrediction> runs;
+        std::vector<dynamics::MotionRunPrediction> runs;
         std::vector<WindowSquares> windows;  ///< by channel of channels_, SI
         WindowSquares all;                   ///< of all channels together, in units of their noise
         [[nodiscard]] double error(std::size_t channel, std::size_t count) const {
@@ -89,29 +90,33 @@ private:
     void decide();
     void guard();
 
-    // pitch_describe.cpp
+    // motion_describe.cpp
     void measure_error();
     void measure_axes();
     void describe();
     [[nodiscard]] Consequence consequence() const;
     [[nodiscard]] double stability() const;
 
+    [[nodiscard]] const dynamics::MotionShape& shape() const { return motion_.shape(); }
+    [[nodiscard]] std::vector<MotionSmooth> smooth_loads() const;
+
+    const dynamics::Motion& motion_;
     const dynamics::Model& model_;
     const dynamics::Measurements& data_;
     const DiscoverOptions& options_;
     core::Progress& progress_;
     Calibration calibration_;
-    std::optional<PitchExperiment> experiment_;
+    std::optional<MotionExperiment> experiment_;
     dynamics::Measurements test_data_;  ///< the held-out runs
     std::vector<std::size_t> channels_;
-    PitchNoise null_noise_;
+    MotionNoise null_noise_;
     double null_cost_ = 0;
     std::vector<double> null_innovations_, null_by_record_;
     bool input_recorded_ = false;
     std::vector<Hypothesis> candidates_;
     std::vector<Probe> probes_;  ///< beside the model as declared
     std::vector<FittedHypothesis> fitted_;
-    std::vector<PitchNoise> noises_;         ///< of fitted_
+    std::vector<MotionNoise> noises_;        ///< of fitted_
     std::vector<std::size_t> candidate_of_;  ///< of the single ones among fitted_
     std::size_t best_single_ = 0;
     SmoothFit whole_;

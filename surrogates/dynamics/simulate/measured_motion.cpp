@@ -1,0 +1,181 @@
+#include "surrogates/dynamics/simulate/measured_motion.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "surrogates/dynamics/simulate/pitch_run.h"
+#include "surrogates/dynamics/simulate/start_state.h"
+
+namespace underbody::dynamics {
+
+const Motion* motion_of(const Model& model, const Measurements& data) {
+    return data.kind == MeasurementKind::time_series && data.motion == surface_motion().shape().name ? &surface_motion()
+           : moves_in_pitch(model, data) ? &heave_pitch_motion()
+                                         : nullptr;
+}
+
+bool column_moves(const MeasuredRun& run, const std::string& column) {
+    const core::Column* found = run.table.find(column);
+    if (found == nullptr || found->is_text() || found->numbers.empty()) {
+        return false;
+    }
+    const auto [low, high] = std::minmax_element(found->numbers.begin(), found->numbers.end());
+    return *high > *low;
+}
+
+std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end) {
+    std::vector<MotionState> motion{state};
+    motion.reserve(end - from + 1);
+    MotionState y = state;
+    ContactState bearing = ContactState::free;
+    for (std::size_t k = from; k < end; ++k) {
+        run.advance(k, y, bearing, {});
+        motion.push_back(y);
+    }
+    return motion;
+}
+
+namespace {
+
+constexpr auto most = static_cast<int>(most_states);
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+
+/// Readings less motion in units of noise, channel by channel; 0 where nothing was read.
+std::vector<double> misfit(MeasuredMotion& run, const MotionReadings& readings, const MotionState& state,
+                           std::size_t from, std::size_t start) {
+    const std::vector<MotionState> motion = motion_from(run, state, from, start);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < run.shape().states.size(); ++i) {
+        if (readings.value[i].empty() || !(readings.noise[i] > 0)) {
+            continue;
+        }
+        for (std::size_t k = from; k <= start; ++k) {
+            const double error = (readings.value[i][k] - run.reading(k, i, motion[k - from])) / readings.noise[i];
+            out.push_back(std::isfinite(readings.value[i][k]) ? error : 0.0);
+        }
+    }
+    return out;
+}
+
+double square(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) {
+        sum += value * value;
+    }
+    return std::isfinite(sum) ? sum : 1e300;
+}
+
+}  // namespace
+
+std::optional<MotionState> fitted_state(MeasuredMotion& run, const MotionReadings& readings, std::size_t from,
+                                        std::size_t start) {
+    const std::vector<MotionShape::State>& states = run.shape().states;
+    const std::optional<MotionStart> line = run.start(readings, from, start);
+    if (!line) {
+        return {};
+    }
+    const std::size_t count = states.size();
+    MotionState state = line->state, loose{};
+    for (std::size_t i = 0; i < count; ++i) {
+        loose[i] = states[i].fit_width + 10 * readings.noise[states[i].place] * std::sqrt(line->slope_factor[i]);
+    }
+    // what the motion does not show of the rates is taken from the line, loosely
+    const auto prior = [&](const MotionState& y) {
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            sum += run.shape().is_place(i) ? 0 : std::pow((y[i] - line->state[i]) / loose[i], 2);
+        }
+        return sum;
+    };
+    std::vector<double> base = misfit(run, readings, state, from, start);
+    double cost = square(base) + prior(state);
+    double damping = 1e-9;
+    for (int iteration = 0; iteration < 12; ++iteration) {
+        std::array<std::vector<double>, most_states> slope;
+        for (std::size_t i = 0; i < count; ++i) {
+            MotionState moved = state;
+            moved[i] += states[i].small;
+            slope[i] = misfit(run, readings, moved, from, start);
+        }
+        const auto size = static_cast<Eigen::Index>(count);
+        Square normal = Square::Zero(size, size);
+        Column right = Column::Zero(size);
+        for (std::size_t n = 0; n < base.size(); ++n) {
+            Column row(size);
+            for (std::size_t i = 0; i < count; ++i) {
+                row[static_cast<Eigen::Index>(i)] = (slope[i][n] - base[n]) / states[i].small;
+            }
+            if (row.allFinite() && std::isfinite(base[n])) {
+                normal += row * row.transpose();
+                right -= row * base[n];
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!run.shape().is_place(i)) {
+                const auto k = static_cast<Eigen::Index>(i);
+                normal(k, k) += 1 / (loose[i] * loose[i]);
+                right[k] -= (state[i] - line->state[i]) / (loose[i] * loose[i]);
+            }
+        }
+        bool better = false;
+        double change = 0;
+        for (int attempt = 0; attempt < 6 && !better; ++attempt) {
+            Square damped = normal;
+            damped.diagonal() *= 1 + damping;
+            const Column step = damped.ldlt().solve(right);
+            MotionState moved = state;
+            change = 0;
+            for (std::size_t i = 0; i < count; ++i) {
+                const double largest = states[i].largest,
+                             by = std::clamp(step[static_cast<Eigen::Index>(i)], -largest, largest);
+                moved[i] += by;
+                change = std::max(change, std::abs(by) / largest);
+            }
+            std::vector<double> there = misfit(run, readings, moved, from, start);
+            const double cost_there = square(there) + prior(moved);
+            better = cost_there < cost;
+            if (better) {
+                state = moved;
+                base = std::move(there);
+                cost = cost_there;
+                damping = std::max(1e-9, 0.1 * damping);
+            } else if (change < 1e-7) {
+                break;
+            } else {
+                damping = std::max(1e-3, 10 * damping);
+            }
+        }
+        if (!better || change < 1e-6) {
+            break;
+        }
+    }
+    return state;
+}
+
+std::vector<MotionWindow> predict_windows(MeasuredMotion& run, double horizon, double past) {
+    const std::vector<double>& t = run.time();
+    const auto at = [&t](double time) {
+        return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
+    };
+    std::vector<MotionWindow> windows;
+    for (double begin = t.front() + past; begin < t.back(); begin += horizon) {
+        MotionWindow window;
+        window.from = at(begin - past);
+        window.start = at(begin);
+        window.end = std::max<std::size_t>(std::min(at(std::min(begin + horizon, t.back()) + 1e-6), t.size()), 1) - 1;
+        if (window.end <= window.start || window.start <= window.from + 2) {
+            continue;
+        }
+        const std::optional<MotionState> state = fitted_state(run, run.readings(), window.from, window.start);
+        if (state) {
+            window.state = *state;
+            window.motion = motion_from(run, *state, window.from, window.end);
+            windows.push_back(std::move(window));
+        }
+    }
+    return windows;
+}
+
+}  // namespace underbody::dynamics

@@ -1,0 +1,108 @@
+// The bench of a coupled motion: simulated rigs with a controller fed the noisy reading, and what discover() says.
+#pragma once
+
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "core/file.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/statistics.h"
+
+namespace underbody::bench {
+
+template <typename Rig>
+struct Kind {
+    const char* name;  ///< what a verdict should say; "none": nothing
+    double colour;     ///< of the noise
+    void (*change)(Rig& rig);
+};
+
+struct MotionOptions {
+    std::size_t seeds = 1;
+    std::uint64_t first = 30000;
+    std::string only, write, verdicts;
+    double colour = -1, seconds = 20;
+    bool understood = true;
+};
+
+inline MotionOptions motion_options(int argc, char** argv) {
+    MotionOptions options;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const std::string name = argv[i], value = argv[i + 1];
+        if (name == "--seeds") {
+            options.seeds = std::stoul(value);
+        } else if (name == "--first-seed") {
+            options.first = std::stoull(value);
+        } else if (name == "--kind") {
+            options.only = value;
+        } else if (name == "--colour") {
+            options.colour = std::stod(value);
+        } else if (name == "--seconds") {
+            options.seconds = std::stod(value);
+        } else if (name == "--write") {
+            options.write = value;
+        } else {
+            std::fprintf(stderr,
+                         "%s [--kind NAME] [--colour C] [--first-seed N] [--seeds N] [--seconds S] [--write FOLDER]\n",
+                         argv[0]);
+            options.understood = false;
+        }
+    }
+    return options;
+}
+
+/// `runs(rig, seed)` makes a data set, `write(data, folder, kind)` puts it into files.
+template <typename Rig, typename Runs, typename Write>
+int judge(const std::vector<Kind<Rig>>& kinds, const dynamics::Model& model, const MotionOptions& asked,
+          const Runs& runs, const Write& write) {
+    for (const Kind<Rig>& kind : kinds) {
+        if ((!asked.only.empty() && asked.only != kind.name) || (asked.colour >= 0 && kind.colour != asked.colour)) {
+            continue;
+        }
+        std::size_t right = 0, tied = 0, silent = 0, unknown = 0;
+        for (std::uint64_t seed = asked.first; seed < asked.first + asked.seeds; ++seed) {
+            Rig rig;
+            rig.seconds = asked.seconds;
+            rig.colour = kind.colour;
+            kind.change(rig);
+            const dynamics::Measurements data = runs(rig, seed);
+            if (!asked.write.empty()) {
+                write(data, std::filesystem::path(asked.write) / (std::string(kind.name) + "-" + std::to_string(seed)),
+                      kind.name);
+                continue;
+            }
+            discovery::DiscoverOptions options;
+            options.consequence = options.figures = false;
+            const std::clock_t begin = std::clock();
+            const discovery::Discovery found = discovery::discover(model, data, options);
+            const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+            const bool named =
+                found.verdict == "effect" && found.effects.size() == 1 && found.effects.front().name == kind.name;
+            bool beside = false;
+            for (const discovery::FoundEffect& rival : found.alternatives) {
+                beside = beside || (found.verdict == "effect" && rival.name == kind.name && rival.probability > 0.2);
+            }
+            const bool none = found.verdict == "none";
+            right += named || beside || (none && std::strcmp(kind.name, "none") == 0) ? 1 : 0;
+            tied += beside ? 1 : 0;
+            silent += none ? 1 : 0;
+            unknown += found.verdict == "unknown" ? 1 : 0;
+            std::printf("  %s, colour %g, seed %llu: %s (%.1f s)\n", kind.name, kind.colour,
+                        static_cast<unsigned long long>(seed), found.sentence.c_str(), spent);
+            std::fflush(stdout);
+        }
+        if (!asked.write.empty()) {
+            continue;
+        }
+        const discovery::Interval interval = discovery::wilson_interval(right, asked.seeds);
+        std::printf("%s, colour %g: %zu of %zu right or tied (%.2f to %.2f), %zu tied, %zu silent, %zu unknown\n",
+                    kind.name, kind.colour, right, asked.seeds, interval.low, interval.high, tied, silent, unknown);
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
+}  // namespace underbody::bench
