@@ -181,8 +181,8 @@ void DesignPanel::make_rows() {
                 words_.emplace_back(word.name, box);
             }
         }
-        auto* row = new ParameterRow(qt(parameter.name), {}, parameter.unit,
-                                     QString::fromStdString(std::string(core::told_unit(parameter.unit))));
+        auto* row =
+            new ParameterRow(qt(parameter.name), {}, parameter.unit, std::string(core::told_unit(parameter.unit)));
         parameter_column_->addWidget(row);
         rows_.emplace_back(parameter.name, row);
         connect_row(row, "set", parameter.name, parameter.unit);
