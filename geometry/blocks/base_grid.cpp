@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -187,6 +189,92 @@ int nozzle_square(const BodySection& section, const DiscCounts& counts) {
     return cells;
 }
 
+/// The square around the nozzle: its middle in X, half its side, and half its side in cells.
+struct NozzleSquare {
+    double x, half;
+    int cells;
+};
+
+/// Of a base without features: evenly between its corners.
+RimAzimuths plain_rim(double front, double back, int across) {
+    RimAzimuths rim;
+    rim.along = 2 * across;
+    for (const auto& part : {evenly(0, front, across), evenly(front, back, 2 * across), evenly(back, pi, across)}) {
+        rim.azimuth.insert(rim.azimuth.end(), part.begin() + (rim.azimuth.empty() ? 0 : 1), part.end());
+    }
+    return rim;
+}
+
+/// From where to where in X, aft and front, the lines of the core run: around every feature.
+std::pair<double, double> core_stretch(const BodySection& section, const std::vector<Feature>& features) {
+    const double nose = section.rim(0), tail = -section.rim(pi);
+    double front = straight_share * nose, back = straight_share * tail;
+    const double margin = 0.02 * (nose - tail);
+    for (const Feature& f : features) {
+        front = std::max(front, f.high + margin);
+        back = std::min(back, f.low - margin);
+    }
+    if (front > nose - 0.6 * margin || back < tail + 0.6 * margin) {
+        no_room(std::string("protrusion or nozzle lies too near to the ") +
+                    (back < tail + 0.6 * margin ? "tail" : "nose") +
+                    " end of the base for straight lines of cells around it",
+                "move it by some millimetres toward the middle, or take the other mesher (snappy)");
+    }
+    return {back, front};
+}
+
+/// Where lines must stand: in the features, and along the cells of the square around the nozzle.
+std::vector<double> fixed_lines(const std::vector<Feature>& features, const std::optional<NozzleSquare>& square) {
+    std::vector<double> fixed;
+    for (const Feature& f : features) {
+        fixed.insert(fixed.end(), f.lines.begin(), f.lines.end());
+    }
+    if (square) {
+        for (const Feature& f : features) {
+            if (!f.lines.empty() && f.high > square->x - square->half && f.low < square->x + square->half) {
+                no_room("protrusion and nozzle lie so near to each other that their cells overlap",
+                        "move one of them, or take the other mesher (snappy)");
+            }
+        }
+        for (int i = -square->cells; i <= square->cells; ++i) {
+            fixed.push_back(square->x + square->half * i / square->cells);
+        }
+        std::sort(fixed.begin(), fixed.end());
+    }
+    return fixed;
+}
+
+/// From where to where something reaches.
+struct Stretch {
+    double back, front;
+};
+
+/// A point of the rim for each line: abreast of it in a feature, spread to the corners outside. `corners` are
+/// azimuths; `core` and `featured` X of lines.
+std::vector<double> rim_points(const BodySection& section, const std::vector<double>& lines, const Stretch& corners,
+                               const Stretch& core, const Stretch& featured, int n) {
+    const auto [back, front] = corners;
+    const double first = featured.back, last = featured.front;
+    std::vector<double> azimuth;
+    const double front_x = section.rim(front) * std::cos(front), back_x = section.rim(back) * std::cos(back);
+    const auto part = evenly(0, front, n);
+    azimuth.assign(part.begin(), part.end() - 1);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        double x = lines[i];
+        if (x > last) {
+            const double w = (x - last) / (core.front - last);
+            x = last + (front_x - last) * w;
+        } else if (x < first) {
+            const double w = (first - x) / (first - core.back);
+            x = first + (back_x - first) * w;
+        }
+        azimuth.push_back(i == 0 ? front : i + 1 == lines.size() ? back : section.rim_azimuth(x));
+    }
+    const auto aft = evenly(back, pi, n);
+    azimuth.insert(azimuth.end(), aft.begin() + 1, aft.end());
+    return azimuth;
+}
+
 }  // namespace
 
 std::int32_t PlaneGrid::add(const Point2& p) {
@@ -199,42 +287,23 @@ RimAzimuths rim_azimuths(const BodySection& section, const DiscCounts& counts) {
     double front = section.front_corner(), back = section.back_corner();
     RimAzimuths rim;
     std::vector<Feature> features = features_of(section, counts);
-    const auto& nozzle = section.body().shape().nozzle;
-    int square = 0;
-    double nozzle_x = 0;
-    if (nozzle) {
-        square = nozzle_square(section, counts);
-        nozzle_x = section.body().shape().base_x(nozzle->position) / section.to_x();
-        const double half = square * counts.core_size;
-        features.push_back({nozzle_x - half, nozzle_x + half, {}, counts.core_size});
+    std::optional<NozzleSquare> square;
+    if (const auto& nozzle = section.body().shape().nozzle) {
+        const int cells = nozzle_square(section, counts);
+        square = {section.body().shape().base_x(nozzle->position) / section.to_x(), cells * counts.core_size, cells};
+        features.push_back({square->x - square->half, square->x + square->half, {}, counts.core_size});
     }
-    const double nose = section.rim(0), tail = -section.rim(pi);
-    double core_front = straight_share * nose, core_back = straight_share * tail;
     if (features.empty()) {
-        rim.along = 2 * n;
-        for (const auto& part : {evenly(0, front, n), evenly(front, back, 2 * n), evenly(back, pi, n)}) {
-            rim.azimuth.insert(rim.azimuth.end(), part.begin() + (rim.azimuth.empty() ? 0 : 1), part.end());
-        }
-        return rim;
+        return plain_rim(front, back, n);
     }
-    const double margin = 0.02 * (nose - tail);
-    for (const Feature& f : features) {
-        core_front = std::max(core_front, f.high + margin);
-        core_back = std::min(core_back, f.low - margin);
-    }
-    if (core_front > nose - 0.6 * margin || core_back < tail + 0.6 * margin) {
-        no_room(std::string("protrusion or nozzle lies too near to the ") +
-                    (core_back < tail + 0.6 * margin ? "tail" : "nose") +
-                    " end of the base for straight lines of cells around it",
-                "move it by some millimetres toward the middle, or take the other mesher (snappy)");
-    }
+    const auto [core_back, core_front] = core_stretch(section, features);
     // Corners of the base stay where they are; on a smooth rim they move out as the core does.
     const bool back_is_smooth = !section.body().cut(Side::back), front_is_smooth = !section.body().cut(Side::front);
     if (front_is_smooth) {
-        front = std::min(front, section.rim_azimuth(core_front + 0.35 * (nose - core_front)));
+        front = std::min(front, section.rim_azimuth(core_front + 0.35 * (section.rim(0) - core_front)));
     }
     if (back_is_smooth) {
-        back = std::max(back, section.rim_azimuth(core_back + 0.35 * (tail - core_back)));
+        back = std::max(back, section.rim_azimuth(core_back + 0.35 * (-section.rim(pi) - core_back)));
     }
     // X of lines, from aft to front: fine in a feature, coarser away from it.
     std::sort(features.begin(), features.end(), [](const Feature& a, const Feature& b) { return a.low < b.low; });
@@ -245,51 +314,18 @@ RimAzimuths rim_azimuths(const BodySection& section, const DiscCounts& counts) {
         }
         return s;
     };
-    std::vector<double> fixed;
-    for (const Feature& f : features) {
-        fixed.insert(fixed.end(), f.lines.begin(), f.lines.end());
-    }
-    if (nozzle) {
-        const double half = square * counts.core_size;
-        for (const Feature& f : features) {
-            if (!f.lines.empty() && f.high > nozzle_x - half && f.low < nozzle_x + half) {
-                no_room("protrusion and nozzle lie so near to each other that their cells overlap",
-                        "move one of them, or take the other mesher (snappy)");
-            }
-        }
-        for (int i = -square; i <= square; ++i) {
-            fixed.push_back(nozzle_x + half * i / square);
-        }
-        std::sort(fixed.begin(), fixed.end());
-    }
-    std::vector<double> lines = sized(core_back, core_front, fixed, size);
+    std::vector<double> lines = sized(core_back, core_front, fixed_lines(features, square), size);
     rim.along = static_cast<int>(lines.size()) - 1;
     std::reverse(lines.begin(), lines.end());  // from the front, as azimuths run
-    if (nozzle) {
+    if (square) {
         const auto nearest = std::min_element(lines.begin(), lines.end(), [&](double a, double b) {
-            return std::abs(a - nozzle_x) < std::abs(b - nozzle_x);
+            return std::abs(a - square->x) < std::abs(b - square->x);
         });
         rim.nozzle_line = static_cast<int>(nearest - lines.begin());
-        rim.nozzle_cells = square;
+        rim.nozzle_cells = square->cells;
     }
-    // A point of the rim for each line: abreast of it in a feature, spread to the corners outside.
-    const double first = features.front().low, last = features.back().high;
-    const double front_x = section.rim(front) * std::cos(front), back_x = section.rim(back) * std::cos(back);
-    const auto part = evenly(0, front, n);
-    rim.azimuth.assign(part.begin(), part.end() - 1);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        double x = lines[i];
-        if (x > last) {
-            const double w = (x - last) / (core_front - last);
-            x = last + (front_x - last) * w;
-        } else if (x < first) {
-            const double w = (first - x) / (first - core_back);
-            x = first + (back_x - first) * w;
-        }
-        rim.azimuth.push_back(i == 0 ? front : i + 1 == lines.size() ? back : section.rim_azimuth(x));
-    }
-    const auto aft = evenly(back, pi, n);
-    rim.azimuth.insert(rim.azimuth.end(), aft.begin() + 1, aft.end());
+    rim.azimuth = rim_points(section, lines, {back, front}, {core_back, core_front},
+                             {features.front().low, features.back().high}, n);
     rim.lines = lines;
     return rim;
 }
@@ -325,6 +361,49 @@ PlaneGrid disc_grid(const RimAzimuths& rim, const DiscCounts& counts, int rings)
 
 namespace {
 
+/// Rings from the circle of the nozzle to the points of the square around it. They grow from `step`, the size of the
+/// cells inside.
+void add_rings_to_square(PlaneGrid& grid, const std::vector<Index>& square, const std::vector<Point2>& circle,
+                         double step, double largest) {
+    const double way = geometry::length(grid.points[static_cast<std::size_t>(square[0])] - circle[0]);
+    int rings = 2;
+    while (rings < 40 && way / step > (std::pow(1.3, rings) - 1) / 0.3) {
+        ++rings;
+    }
+    std::vector<Point2> square_points;
+    for (const Index s : square) {
+        square_points.push_back(grid.points[static_cast<std::size_t>(s)]);
+    }
+    const auto growing = [&](int m) {
+        const double here = geometry::length(square_points[at(m)] - circle[at(m)]);
+        auto d = graded(here, rings, std::min(step, here / rings), largest);
+        for (double& value : d) {
+            value /= here;
+        }
+        return d;
+    };
+    // Rings end on points that are there already.
+    std::vector<Index> chain = grid.nozzle_rim;
+    std::vector<std::vector<double>> share;
+    for (int m = 0; m < static_cast<int>(square.size()); ++m) {
+        share.push_back(growing(m));
+    }
+    for (int r = 1; r <= rings; ++r) {
+        std::vector<Index> next;
+        for (int m = 0; m < static_cast<int>(square.size()); ++m) {
+            next.push_back(
+                r == rings ? square[at(m)]
+                           : grid.add(circle[at(m)] + share[at(m)][at(r)] * (square_points[at(m)] - circle[at(m)])));
+        }
+        add_strip(grid, next, chain, false);
+        chain = next;
+    }
+}
+
+double core_scale(const BodySection& section) {
+    return section.largest() * std::sqrt(1 - std::pow(section.body().shape().base_cut, 2));
+}
+
 /// What replaces the square around the nozzle: rings to its circle, and a round core inside.
 void add_nozzle(PlaneGrid& grid, const BodySection& section, const RimAzimuths& rim,
                 const std::vector<std::vector<Index>>& id, const DiscCounts& counts) {
@@ -355,57 +434,19 @@ void add_nozzle(PlaneGrid& grid, const BodySection& section, const RimAzimuths& 
     grid.nozzle_rim = add_rings(
         grid, outline_of(index, add_core(grid, core, 0, 0, true)), circle, [&](int) { return equal; }, inner_rings,
         true);
-    // Outside: from the circle to the square, growing from the size of the cells inside.
-    const double step = 0.42 * radius / inner_rings;
-    const double way = geometry::length(grid.points[static_cast<std::size_t>(square[0])] - circle[0]);
-    int rings = 2;
-    while (rings < 40 && way / step > (std::pow(1.3, rings) - 1) / 0.3) {
-        ++rings;
-    }
-    std::vector<Point2> square_points;
-    for (const Index s : square) {
-        square_points.push_back(grid.points[static_cast<std::size_t>(s)]);
-    }
-    const auto growing = [&](int m) {
-        const double here = geometry::length(square_points[at(m)] - circle[at(m)]);
-        auto d = graded(here, rings, std::min(step, here / rings), counts.core_size);
-        for (double& value : d) {
-            value /= here;
-        }
-        return d;
-    };
-    // Rings end on points that are there already.
-    std::vector<Index> chain = grid.nozzle_rim;
-    std::vector<std::vector<double>> share;
-    for (int m = 0; m < index.count(); ++m) {
-        share.push_back(growing(m));
-    }
-    for (int r = 1; r <= rings; ++r) {
-        std::vector<Index> next;
-        for (int m = 0; m < index.count(); ++m) {
-            next.push_back(
-                r == rings ? square[at(m)]
-                           : grid.add(circle[at(m)] + share[at(m)][at(r)] * (square_points[at(m)] - circle[at(m)])));
-        }
-        add_strip(grid, next, chain, false);
-        chain = next;
-    }
+    add_rings_to_square(grid, square, circle, 0.42 * radius / inner_rings, counts.core_size);
 }
 
-}  // namespace
+/// Outline and middle line of the core.
+struct CoreLines {
+    std::vector<Point2> outline;
+    std::vector<double> middle;
+};
 
-PlaneGrid base_grid(const BodySection& section, const RimAzimuths& rim, const DiscCounts& counts) {
-    PlaneGrid grid;
-    const CoreIndex index{rim.along, counts.across};
-    const int n = counts.across;
-    const double widest = section.rim(0);
+CoreLines core_lines(const BodySection& section, const RimAzimuths& rim, const std::vector<Point2>& edge, int n) {
+    const CoreIndex index{rim.along, n};
     const double front = rim.azimuth[at(n)], back = rim.azimuth[at(n + rim.along)];
-    std::vector<Point2> edge, outline(rim.azimuth.size());
-    for (std::size_t m = 0; m < rim.azimuth.size(); ++m) {
-        const double azimuth = rim.azimuth[m], r = section.rim(azimuth);
-        const bool on_middle = m == 0 || m + 1 == rim.azimuth.size();
-        edge.push_back({r * std::cos(azimuth), on_middle ? 0 : r * std::sin(azimuth)});
-    }
+    std::vector<Point2> outline(rim.azimuth.size());
     std::vector<double> middle;
     const double scale = section.largest() * std::sqrt(1 - std::pow(section.body().shape().base_cut, 2));
     if (rim.lines.empty()) {
@@ -424,15 +465,33 @@ PlaneGrid base_grid(const BodySection& section, const RimAzimuths& rim, const Di
         }
         middle.assign(rim.lines.rbegin(), rim.lines.rend());
     }
-    const auto id =
-        add_core(grid, core_points(index, outline, middle), rim.along - rim.nozzle_line, rim.nozzle_cells, false);
+    return {std::move(outline), std::move(middle)};
+}
+
+}  // namespace
+
+PlaneGrid base_grid(const BodySection& section, const RimAzimuths& rim, const DiscCounts& counts) {
+    PlaneGrid grid;
+    const CoreIndex index{rim.along, counts.across};
+    const int n = counts.across;
+    const double widest = section.rim(0);
+    std::vector<Point2> edge;
+    for (std::size_t m = 0; m < rim.azimuth.size(); ++m) {
+        const double azimuth = rim.azimuth[m], r = section.rim(azimuth);
+        const bool on_middle = m == 0 || m + 1 == rim.azimuth.size();
+        edge.push_back({r * std::cos(azimuth), on_middle ? 0 : r * std::sin(azimuth)});
+    }
+    const CoreLines core = core_lines(section, rim, edge, n);
+    const double scale = core_scale(section);
+    const auto id = add_core(grid, core_points(index, core.outline, core.middle), rim.along - rim.nozzle_line,
+                             rim.nozzle_cells, false);
     if (rim.nozzle_cells > 0) {
         add_nozzle(grid, section, rim, id, counts);
     }
-    const double first_length = widest - geometry::length(outline.front());
+    const double first_length = widest - geometry::length(core.outline.front());
     const auto common = graded(first_length, counts.rings, 0.9 * core_share * scale / n, counts.rim_size);
     const auto to_rim = [&](int m) {
-        const double way = rim.lines.empty() ? first_length : geometry::length(edge[at(m)] - outline[at(m)]);
+        const double way = rim.lines.empty() ? first_length : geometry::length(edge[at(m)] - core.outline[at(m)]);
         std::vector<double> d =
             rim.lines.empty() ? common : graded(way, counts.rings, 0.9 * core_share * scale / n, counts.rim_size);
         for (double& value : d) {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/blocks/block_layout.h"
+#include "geometry/water/above_ground.h"
 
 namespace underbody::geometry {
 
@@ -542,14 +543,8 @@ private:
                 }
             }
         }
-        if (lowest <= 0) {
-            throw core::InputError(
-                "contact",
-                "the body's " + hex_.patch_names[static_cast<std::size_t>(patch)] + " is " +
-                    core::format_number(-1000 * lowest, 4) + " mm below the ground at this gap and pitch",
-                {},
-                "the nearest allowed gap: above " + core::format_number(1000 * (layout_.gap() - lowest), 6) + " mm");
-        }
+        require_above_ground({lowest, {}, {}, hex_.patch_names[static_cast<std::size_t>(patch)]},
+                             {layout_.gap(), 0, 0});
         return lowest;
     }
 

@@ -93,21 +93,14 @@ double skewness(const PolyMesh& mesh, std::size_t f, const FaceGeometry& face, c
     return size / extent;
 }
 
-}  // namespace
+/// The centres of the faces that are worst.
+struct WorstFaces {
+    Vec3 skewed, inverted;
+};
 
-MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_walls) {
-    std::vector<FaceGeometry> faces;
-    faces.reserve(mesh.faces.size());
-    for (const Quad& face : mesh.faces) {
-        faces.push_back(face_geometry(mesh, face));
-    }
-    const Cells cells = cells_of(mesh, faces);
-    MeshQuality q;
-    q.cells = mesh.cells;
-    q.faces = mesh.faces.size();
-    q.points = mesh.points.size();
+void measure_cells(MeshQuality& q, const Cells& cells) {
     q.smallest_volume = HUGE_VAL;
-    for (std::size_t c = 0; c < mesh.cells; ++c) {
+    for (std::size_t c = 0; c < cells.volume.size(); ++c) {
         q.volume += cells.volume[c];
         q.smallest_volume = std::min(q.smallest_volume, cells.volume[c]);
         if (!(cells.volume[c] > 0)) {
@@ -117,8 +110,11 @@ MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_w
         q.cell_openness = std::max(
             {q.cell_openness, std::abs(open.x) / area.x, std::abs(open.y) / area.y, std::abs(open.z) / area.z});
     }
+}
+
+void measure_inner_faces(MeshQuality& q, const PolyMesh& mesh, const std::vector<FaceGeometry>& faces,
+                         const Cells& cells, WorstFaces& worst) {
     double cosines = 0, worst_cosine = 1;
-    Vec3 skewed, inverted;
     for (std::size_t f = 0; f < mesh.inner_faces(); ++f) {
         const Vec3& from = cells.centre[static_cast<std::size_t>(mesh.owner[f])];
         const Vec3 way = cells.centre[static_cast<std::size_t>(mesh.neighbour[f])] - from;
@@ -128,16 +124,20 @@ MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_w
         worst_cosine = std::min(worst_cosine, cosine);
         q.severe_non_orthogonality += cosine < std::cos(70 * degree) ? 1 : 0;
         if (cosine <= 0) {
-            inverted = q.inverted_faces++ == 0 ? faces[f].centre : inverted;
+            worst.inverted = q.inverted_faces++ == 0 ? faces[f].centre : worst.inverted;
         }
         const double skew = skewness(mesh, f, faces[f], from, way, 0.2);
         if (skew > q.largest_skewness) {
             q.largest_skewness = skew;
-            skewed = faces[f].centre;
+            worst.skewed = faces[f].centre;
         }
     }
     q.largest_non_orthogonality = std::acos(worst_cosine);
     q.mean_non_orthogonality = std::acos(cosines / std::max<double>(1, static_cast<double>(mesh.inner_faces())));
+}
+
+void measure_boundary(MeshQuality& q, const PolyMesh& mesh, const std::vector<FaceGeometry>& faces, const Cells& cells,
+                      WorstFaces& worst) {
     Vec3 open;
     double boundary = 0;
     for (std::size_t f = mesh.inner_faces(); f < faces.size(); ++f) {
@@ -146,12 +146,17 @@ MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_w
         const double skew = skewness(mesh, f, faces[f], from, dot(normal, faces[f].centre - from) * normal, 0.4);
         if (skew > q.largest_skewness) {
             q.largest_skewness = skew;
-            skewed = faces[f].centre;
+            worst.skewed = faces[f].centre;
         }
         open += faces[f].area;
         boundary += norm(faces[f].area);
     }
     q.boundary_openness = norm(open) / boundary;
+}
+
+/// Distance of the body's walls from the centres of the cells on them.
+void measure_wall_distance(MeshQuality& q, const PolyMesh& mesh, const std::vector<FaceGeometry>& faces,
+                           const Cells& cells, const std::vector<std::string>& body_walls) {
     double area = 0;
     q.wall_distance_smallest = HUGE_VAL;
     for (const std::string& name : body_walls) {
@@ -167,7 +172,27 @@ MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_w
         }
     }
     q.wall_distance_mean /= area > 0 ? area : 1;
-    q.where = q.negative_volumes > 0 ? q.where : q.inverted_faces > 0 ? inverted : skewed;
+}
+
+}  // namespace
+
+MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_walls) {
+    std::vector<FaceGeometry> faces;
+    faces.reserve(mesh.faces.size());
+    for (const Quad& face : mesh.faces) {
+        faces.push_back(face_geometry(mesh, face));
+    }
+    const Cells cells = cells_of(mesh, faces);
+    MeshQuality q;
+    q.cells = mesh.cells;
+    q.faces = mesh.faces.size();
+    q.points = mesh.points.size();
+    measure_cells(q, cells);
+    WorstFaces worst;
+    measure_inner_faces(q, mesh, faces, cells, worst);
+    measure_boundary(q, mesh, faces, cells, worst);
+    measure_wall_distance(q, mesh, faces, cells, body_walls);
+    q.where = q.negative_volumes > 0 ? q.where : q.inverted_faces > 0 ? worst.inverted : worst.skewed;
     return q;
 }
 

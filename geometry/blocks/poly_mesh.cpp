@@ -87,10 +87,18 @@ const PolyMesh::Patch& PolyMesh::patch(const std::string& name) const {
     throw core::InputError("name", "the mesh has no patch '" + name + "'", {}, core::did_you_mean(name, names));
 }
 
-PolyMesh faces_of(const HexMesh& mesh) {
-    const std::vector<HalfFace> all = grouped_faces(mesh);
+namespace {
+
+/// Faces between two cells and faces of patches, each in the order of the file.
+struct SortedFaces {
     std::vector<Inner> inner;
     std::vector<Outer> outer;
+};
+
+SortedFaces sorted_faces(const HexMesh& mesh) {
+    const std::vector<HalfFace> all = grouped_faces(mesh);
+    SortedFaces faces;
+    auto& [inner, outer] = faces;
     inner.reserve(3 * mesh.cells.size());
     for (std::size_t i = 0; i < all.size();) {
         std::size_t end = i + 1;
@@ -122,10 +130,18 @@ PolyMesh faces_of(const HexMesh& mesh) {
     std::sort(outer.begin(), outer.end(), [](const Outer& a, const Outer& b) {
         return a.patch != b.patch ? a.patch < b.patch : a.cell != b.cell ? a.cell < b.cell : a.which < b.which;
     });
+    return faces;
+}
+
+}  // namespace
+
+PolyMesh faces_of(const HexMesh& mesh) {
+    const SortedFaces faces = sorted_faces(mesh);
+    const std::vector<Outer>& outer = faces.outer;
     PolyMesh poly;
     poly.points = mesh.points;
     poly.cells = mesh.cells.size();
-    for (const Inner& f : inner) {
+    for (const Inner& f : faces.inner) {
         poly.faces.push_back(corners_of(mesh.cells[static_cast<std::size_t>(f.owner)], f.which));
         poly.owner.push_back(f.owner);
         poly.neighbour.push_back(f.neighbour);

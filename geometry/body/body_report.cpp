@@ -98,35 +98,47 @@ void require_clearance(const SurfaceMesh& body, const Placement& placement) {
                            {}, hint);
 }
 
+namespace {
+
+void make_body(Body& body, const std::filesystem::path& path, const BodyOptions& options, core::Progress& progress) {
+    body.shape = read_shape(path);
+    for (const auto& [name, value] : options.set) {
+        set_parameter(*body.shape, name, value);
+    }
+    check(*body.shape);
+    body.name = body.shape->name;
+    body.loading = read_loading(path);
+    SurfaceOptions surface;
+    surface.triangles = options.triangles;
+    body.origin_from_axis = base_centre(*body.shape);
+    body.mesh = make_surface(*body.shape, surface, progress);
+    progress.report(0.3, "certificate");
+    body.certificate = certify(body.mesh, *body.shape, progress);
+}
+
+void take_surface(Body& body, const std::filesystem::path& path, const BodyOptions& options, core::Progress& progress) {
+    if (!options.set.empty()) {
+        throw core::InputError("set", "a surface has no parameters to set, only a SHAPE.toml has",
+                               {path.string(), {}, {}, {}});
+    }
+    body.name = path.stem().string();
+    MeshReadOptions reading;
+    reading.unit = options.unit;
+    reading.feature_angle = options.feature_angle * degree;
+    body.mesh = read_mesh(path, reading);
+    move_to_base(body.mesh);
+    body.certificate = certify(body.mesh, progress);
+}
+
+}  // namespace
+
 Body read_body(const std::filesystem::path& path, const BodyOptions& options, core::Progress& progress) {
     Body body;
     body.density = options.density;
     if (core::lower_case(path.extension().string()) == ".toml") {
-        body.shape = read_shape(path);
-        for (const auto& [name, value] : options.set) {
-            set_parameter(*body.shape, name, value);
-        }
-        check(*body.shape);
-        body.name = body.shape->name;
-        body.loading = read_loading(path);
-        SurfaceOptions surface;
-        surface.triangles = options.triangles;
-        body.origin_from_axis = base_centre(*body.shape);
-        body.mesh = make_surface(*body.shape, surface, progress);
-        progress.report(0.3, "certificate");
-        body.certificate = certify(body.mesh, *body.shape, progress);
+        make_body(body, path, options, progress);
     } else {
-        if (!options.set.empty()) {
-            throw core::InputError("set", "a surface has no parameters to set, only a SHAPE.toml has",
-                                   {path.string(), {}, {}, {}});
-        }
-        body.name = path.stem().string();
-        MeshReadOptions reading;
-        reading.unit = options.unit;
-        reading.feature_angle = options.feature_angle * degree;
-        body.mesh = read_mesh(path, reading);
-        move_to_base(body.mesh);
-        body.certificate = certify(body.mesh, progress);
+        take_surface(body, path, options, progress);
     }
     require(body.certificate, "'" + path.string() + "'");
     if (body.shape) {

@@ -36,6 +36,38 @@ double BodyShape::base_x(double fraction) const {
     return extent.nose + fraction * (extent.tail - extent.nose);
 }
 
+namespace {
+
+Protrusion protrusion_from(const core::TomlTable& table) {
+    Protrusion p;
+    p.position = table.quantity_or("position", "1", p.position);
+    p.height = table.quantity("height", "m");
+    p.length = table.quantity_or("length", "m", p.length);
+    p.profile = table.choice("profile", {"rounded", "sharp"}, "rounded") == "sharp" ? ProtrusionProfile::sharp
+                                                                                    : ProtrusionProfile::rounded;
+    p.blend_radius = table.quantity_or("blend_radius", "m", 0);
+    p.width = table.find_quantity("width", "m");
+    return p;
+}
+
+Nozzle nozzle_from(const core::TomlTable& table) {
+    Nozzle n;
+    n.diameter = table.quantity_or("diameter", "m", n.diameter);
+    n.position = table.quantity_or("position", "1", n.position);
+    n.depth = table.quantity_or("depth", "m", 0);
+    return n;
+}
+
+TailPlate tail_plate_from(const core::TomlTable& table) {
+    TailPlate plate;
+    plate.chord = table.quantity("chord", "m");
+    plate.half_angle = table.quantity_or("half_angle", "rad", plate.half_angle);
+    plate.inner_angle = table.quantity_or("inner_angle", "rad", plate.inner_angle);
+    return plate;
+}
+
+}  // namespace
+
 BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
     BodyShape shape;
     const core::TomlTable body = root.table("body");
@@ -57,32 +89,13 @@ BodyShape shape_from(const core::TomlTable& root, const std::string& name) {
     shape.base_pitch = body.quantity_or("base_pitch", "rad", 0);
     shape.base_offset = body.quantity_or("base_offset", "m", 0);
     if (root.has("protrusion")) {
-        const core::TomlTable table = root.table("protrusion");
-        Protrusion p;
-        p.position = table.quantity_or("position", "1", p.position);
-        p.height = table.quantity("height", "m");
-        p.length = table.quantity_or("length", "m", p.length);
-        p.profile = table.choice("profile", {"rounded", "sharp"}, "rounded") == "sharp" ? ProtrusionProfile::sharp
-                                                                                        : ProtrusionProfile::rounded;
-        p.blend_radius = table.quantity_or("blend_radius", "m", 0);
-        p.width = table.find_quantity("width", "m");
-        shape.protrusion = p;
+        shape.protrusion = protrusion_from(root.table("protrusion"));
     }
     if (root.has("nozzle")) {
-        const core::TomlTable table = root.table("nozzle");
-        Nozzle n;
-        n.diameter = table.quantity_or("diameter", "m", n.diameter);
-        n.position = table.quantity_or("position", "1", n.position);
-        n.depth = table.quantity_or("depth", "m", 0);
-        shape.nozzle = n;
+        shape.nozzle = nozzle_from(root.table("nozzle"));
     }
     if (root.has("tail_plate")) {
-        const core::TomlTable table = root.table("tail_plate");
-        TailPlate plate;
-        plate.chord = table.quantity("chord", "m");
-        plate.half_angle = table.quantity_or("half_angle", "rad", plate.half_angle);
-        plate.inner_angle = table.quantity_or("inner_angle", "rad", plate.inner_angle);
-        shape.tail_plate = plate;
+        shape.tail_plate = tail_plate_from(root.table("tail_plate"));
     }
     check(shape, &root);
     return shape;

@@ -35,8 +35,8 @@ std::vector<SurfaceMesh> sides(const FlowDomain& domain) {
             side(domain.boundaries.back(), {{{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, a.y, b.z}, {a.x, a.y, b.z}}})};
 }
 
-// The plane y = 0 of a half model, around the section of the body, with the body's own points on it.
-SurfaceMesh symmetry_plane(const FlowDomain& domain, const SurfaceMesh& half) {
+/// The plane without the section of the body, which is bounded by the edges of one triangle only.
+PatchProblem plane_around(const FlowDomain& domain, const SurfaceMesh& half) {
     std::map<std::pair<std::int32_t, std::int32_t>, int> seen;
     for (const Triangle& t : half.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -69,7 +69,12 @@ SurfaceMesh symmetry_plane(const FlowDomain& domain, const SurfaceMesh& half) {
     const double edge = 0.1 * (b.x - a.x);
     problem.edge = [edge](const PlanePoint&) { return edge; };
     problem.surface = [](const PlanePoint& p) { return Vec3{p.u, 0, p.v}; };
-    const PatchTriangles filled = fill_patch(problem);
+    return problem;
+}
+
+// The plane y = 0 of a half model, around the section of the body, with the body's own points on it.
+SurfaceMesh symmetry_plane(const FlowDomain& domain, const SurfaceMesh& half) {
+    const PatchTriangles filled = fill_patch(plane_around(domain, half));
     SurfaceMesh mesh;
     mesh.patch_names = {"symmetry"};
     for (const PlanePoint& p : filled.points) {
@@ -92,10 +97,43 @@ std::string joined(const std::vector<std::string>& names, const std::string& bet
     return text;
 }
 
+/// Lift, drag and pitch moment of the walls.
+std::string journal_reports(const FlowDomain& d, double gap) {
+    std::string text;
+    const std::string walls = joined(d.walls, " ");
+    const auto report = [&](const std::string& name, const std::string& kind, const std::string& vector) {
+        text += "/solve/report-definitions/add " + name + " " + kind + " thread-names " + walls + " () " + vector +
+                " quit\n";
+    };
+    report("lift", "force", "force-vector 0 0 1");
+    report("drag", "force", "force-vector -1 0 0");
+    // Nose up is a turn of x toward z: about -y.
+    report("pitch-moment", "moment", "mom-center 0 0 " + digits(gap) + " mom-axis 0 -1 0");
+    return text;
+}
+
+/// The stream at the inlet, the outlet and the sliding ground.
+std::string journal_stream(const FlowOptions& o) {
+    const std::string v = digits(o.speed);
+    return "; turbulence of the stream: the third choice of ke-spec, intensity in per cent and viscosity ratio\n"
+           "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " +
+           v + " ke-spec no no yes turb-intensity " + digits(100 * o.turbulence_intensity) + " turb-viscosity-ratio " +
+           digits(o.viscosity_ratio) + " quit\n" +
+           "/define/boundary-conditions/set/pressure-outlet outlet () gauge-pressure no 0 quit\n"
+           "; the ground slides with the stream, " +
+           v +
+           " m/s toward -x: a negative speed along +x, the direction a wall has unless told otherwise\n"
+           "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no -" +
+           v +
+           " quit\n"
+           "/solve/set/p-v-coupling 24\n/solve/set/discretization-scheme/mom 1\n/solve/set/discretization-scheme/k "
+           "1\n/solve/set/discretization-scheme/omega 1\n";
+}
+
 std::string journal(const FlowDomain& d, const FlowOptions& o) {
     const double mu = o.density * o.kinematic_viscosity, k = 1.5 * std::pow(o.turbulence_intensity * o.speed, 2);
     const double omega = k / (o.viscosity_ratio * o.kinematic_viscosity);
-    const std::string walls = joined(d.walls, " "), v = digits(o.speed);
+    const std::string v = digits(o.speed);
     std::string text =
         "; Fluent journal: steady flow past the body, k-omega SST, ground moving with the stream.\n"
         "; Mesh the surfaces of surfaces/ with these zone names and save it as mesh.msh.h5 beside this file; then\n"
@@ -118,28 +156,8 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
     for (const std::string& wall : d.walls) {
         text += "/define/boundary-conditions/zone-type " + wall + " wall\n";
     }
-    text +=
-        "; turbulence of the stream: the third choice of ke-spec, intensity in per cent and viscosity ratio\n"
-        "/define/boundary-conditions/set/velocity-inlet inlet () vmag no " +
-        v + " ke-spec no no yes turb-intensity " + digits(100 * o.turbulence_intensity) + " turb-viscosity-ratio " +
-        digits(o.viscosity_ratio) + " quit\n" +
-        "/define/boundary-conditions/set/pressure-outlet outlet () gauge-pressure no 0 quit\n"
-        "; the ground slides with the stream, " +
-        v +
-        " m/s toward -x: a negative speed along +x, the direction a wall has unless told otherwise\n"
-        "/define/boundary-conditions/set/wall ground () motion-bc yes motion-bc-moving relative? no vmag no -" +
-        v +
-        " quit\n"
-        "/solve/set/p-v-coupling 24\n/solve/set/discretization-scheme/mom 1\n/solve/set/discretization-scheme/k "
-        "1\n/solve/set/discretization-scheme/omega 1\n";
-    const auto report = [&](const std::string& name, const std::string& kind, const std::string& vector) {
-        text += "/solve/report-definitions/add " + name + " " + kind + " thread-names " + walls + " () " + vector +
-                " quit\n";
-    };
-    report("lift", "force", "force-vector 0 0 1");
-    report("drag", "force", "force-vector -1 0 0");
-    // Nose up is a turn of x toward z: about -y.
-    report("pitch-moment", "moment", "mom-center 0 0 " + digits(o.placement.gap) + " mom-axis 0 -1 0");
+    text += journal_stream(o);
+    text += journal_reports(d, o.placement.gap);
     text +=
         "/solve/report-files/add forces report-defs lift drag pitch-moment () file-name \"forces.out\" quit\n"
         "; k " +
@@ -157,15 +175,71 @@ std::string journal(const FlowDomain& d, const FlowOptions& o) {
     return text;
 }
 
-std::string ccl(const FlowDomain& d, const FlowOptions& o) {
+std::string ccl_boundary(const std::string& name, const std::string& type, const std::string& body) {
+    return "    BOUNDARY: " + name + "\n      Boundary Type = " + type + "\n      Location = " + name + "\n" + body +
+           "    END\n";
+}
+
+/// Lift, drag and pitch moment of the walls, as expressions.
+std::string ccl_forces(const FlowDomain& d, double gap) {
+    std::string lift, drag, moment;
+    for (const std::string& wall : d.walls) {
+        const std::string plus = lift.empty() ? "" : " + ";
+        lift += plus + "force_z()@" + wall;
+        drag += (drag.empty() ? "-force_x()@" : " - force_x()@") + wall;
+        // about the centre of the base: torque at the origin less gap times force_x, nose up = -y
+        moment += (moment.empty() ? "-torque_y()@" : " - torque_y()@") + wall;
+    }
+    return "      LiftForce = " + lift + "\n      DragForce = " + drag + "\n      PitchMoment = " + moment + " - " +
+           digits(gap) + " [m] * DragForce\n    END\n  END\nEND\n";
+}
+
+std::string ccl_boundaries(const FlowDomain& d, const FlowOptions& o) {
     const std::string v = digits(o.speed) + " [m s^-1]";
-    const auto boundary = [](const std::string& name, const std::string& type, const std::string& body) {
-        return "    BOUNDARY: " + name + "\n      Boundary Type = " + type + "\n      Location = " + name + "\n" +
-               body + "    END\n";
-    };
     const std::string no_slip =
         "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = No Slip Wall\n        END\n      "
         "END\n";
+    std::string text =
+        ccl_boundary("inlet", "INLET",
+                     "      BOUNDARY CONDITIONS:\n        FLOW REGIME:\n          Option = Subsonic\n        END\n     "
+                     "   MASS AND MOMENTUM:\n          Option = Cartesian Velocity Components\n          U = -" +
+                         v +
+                         "\n          V = 0 [m s^-1]\n          W = 0 [m s^-1]\n        END\n        TURBULENCE:\n     "
+                         "     Eddy Viscosity Ratio = " +
+                         digits(o.viscosity_ratio) +
+                         "\n          Fractional Intensity = " + digits(o.turbulence_intensity) +
+                         "\n          Option = Intensity and Eddy Viscosity Ratio\n        END\n      END\n") +
+        ccl_boundary("outlet", "OPENING",
+                     "      BOUNDARY CONDITIONS:\n        FLOW REGIME:\n          Option = Subsonic\n        END\n     "
+                     "   MASS AND MOMENTUM:\n          Option = Entrainment\n          Relative Pressure = 0 [Pa]\n    "
+                     "    END\n        TURBULENCE:\n          Option = Zero Gradient\n        END\n      END\n") +
+        ccl_boundary("ground", "WALL",
+                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = No Slip Wall\n        "
+                     "  WALL VELOCITY:\n            Option = Cartesian Components\n            Wall U = -" +
+                         v +
+                         "\n            Wall V = 0 [m s^-1]\n            Wall W = 0 [m s^-1]\n          END\n        "
+                         "END\n      END\n") +
+        ccl_boundary("top", "WALL",
+                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n      "
+                     "  END\n      END\n") +
+        ccl_boundary("side", "WALL",
+                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n      "
+                     "  END\n      END\n");
+    if (o.half) {
+        text += ccl_boundary("symmetry", "SYMMETRY", "");
+    } else {
+        text +=
+            ccl_boundary("side_starboard", "WALL",
+                         "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n  "
+                         "      END\n      END\n");
+    }
+    for (const std::string& wall : d.walls) {
+        text += ccl_boundary(wall, "WALL", no_slip);
+    }
+    return text;
+}
+
+std::string ccl(const FlowDomain& d, const FlowOptions& o) {
     std::string text =
         "# CFX CCL: steady flow past the body, SST, ground moving with the stream. Import into CFX-Pre over a mesh "
         "whose 2D regions\n"
@@ -178,53 +252,10 @@ std::string ccl(const FlowDomain& d, const FlowOptions& o) {
         "      DYNAMIC VISCOSITY:\n        Dynamic Viscosity = " +
         digits(o.density * o.kinematic_viscosity) +
         " [Pa s]\n        Option = Value\n      END\n    END\n  END\n  CEL:\n    EXPRESSIONS:\n";
-    std::string lift, drag, moment;
-    for (const std::string& wall : d.walls) {
-        const std::string plus = lift.empty() ? "" : " + ";
-        lift += plus + "force_z()@" + wall;
-        drag += (drag.empty() ? "-force_x()@" : " - force_x()@") + wall;
-        // about the centre of the base: torque at the origin less gap times force_x, nose up = -y
-        moment += (moment.empty() ? "-torque_y()@" : " - torque_y()@") + wall;
-    }
-    text += "      LiftForce = " + lift + "\n      DragForce = " + drag + "\n      PitchMoment = " + moment + " - " +
-            digits(o.placement.gap) + " [m] * DragForce\n    END\n  END\nEND\n" +
+    text += ccl_forces(d, o.placement.gap) +
             "FLOW: Flow Analysis 1\n  ANALYSIS TYPE:\n    Option = Steady State\n  END\n  DOMAIN: Water\n    Coord "
             "Frame = Coord 0\n    Domain Type = Fluid\n    Location = Assembly\n" +
-            boundary("inlet", "INLET",
-                     "      BOUNDARY CONDITIONS:\n        FLOW REGIME:\n          Option = Subsonic\n        END\n     "
-                     "   MASS AND MOMENTUM:\n          Option = Cartesian Velocity Components\n          U = -" +
-                         v +
-                         "\n          V = 0 [m s^-1]\n          W = 0 [m s^-1]\n        END\n        TURBULENCE:\n     "
-                         "     Eddy Viscosity Ratio = " +
-                         digits(o.viscosity_ratio) +
-                         "\n          Fractional Intensity = " + digits(o.turbulence_intensity) +
-                         "\n          Option = Intensity and Eddy Viscosity Ratio\n        END\n      END\n") +
-            boundary("outlet", "OPENING",
-                     "      BOUNDARY CONDITIONS:\n        FLOW REGIME:\n          Option = Subsonic\n        END\n     "
-                     "   MASS AND MOMENTUM:\n          Option = Entrainment\n          Relative Pressure = 0 [Pa]\n    "
-                     "    END\n        TURBULENCE:\n          Option = Zero Gradient\n        END\n      END\n") +
-            boundary("ground", "WALL",
-                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = No Slip Wall\n        "
-                     "  WALL VELOCITY:\n            Option = Cartesian Components\n            Wall U = -" +
-                         v +
-                         "\n            Wall V = 0 [m s^-1]\n            Wall W = 0 [m s^-1]\n          END\n        "
-                         "END\n      END\n") +
-            boundary("top", "WALL",
-                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n      "
-                     "  END\n      END\n") +
-            boundary("side", "WALL",
-                     "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n      "
-                     "  END\n      END\n");
-    if (o.half) {
-        text += boundary("symmetry", "SYMMETRY", "");
-    } else {
-        text += boundary("side_starboard", "WALL",
-                         "      BOUNDARY CONDITIONS:\n        MASS AND MOMENTUM:\n          Option = Free Slip Wall\n  "
-                         "      END\n      END\n");
-    }
-    for (const std::string& wall : d.walls) {
-        text += boundary(wall, "WALL", no_slip);
-    }
+            ccl_boundaries(d, o);
     text +=
         "    DOMAIN MODELS:\n      BUOYANCY MODEL:\n        Option = Non Buoyant\n      END\n      DOMAIN MOTION:\n    "
         "    Option = Stationary\n      END\n      REFERENCE PRESSURE:\n        Reference Pressure = 1 [atm]\n      "

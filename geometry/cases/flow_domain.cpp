@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/cases/case_files.h"
+#include "geometry/water/above_ground.h"
 
 namespace underbody::geometry {
 
@@ -30,7 +31,9 @@ int iterations_of(const FlowOptions& options) {
     return options.iterations > 0 ? options.iterations : options.mesher == CaseMesher::blocks ? 800 : 400;
 }
 
-FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& o) {
+namespace {
+
+void check(const SurfaceMesh& body, const FlowOptions& o) {
     for (const auto& [name, value] : {std::pair{"speed", o.speed},
                                       {"density", o.density},
                                       {"kinematic_viscosity", o.kinematic_viscosity},
@@ -55,18 +58,15 @@ FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& o) {
         }
         port_half(body);  // throws when triangles cross the plane
     }
+}
+
+}  // namespace
+
+FlowDomain flow_domain(const SurfaceMesh& body, const FlowOptions& o) {
+    check(body, o);
     FlowDomain domain;
     domain.clearance = clearance(body, o.placement);
-    if (domain.clearance.smallest <= 0) {
-        throw core::InputError("contact",
-                               "the body's " + domain.clearance.patch + " is " +
-                                   core::format_number(-1000 * domain.clearance.smallest, 4) +
-                                   " mm below the ground at this gap and pitch",
-                               {},
-                               "the nearest allowed gap: above " +
-                                   core::format_number(1000 * (o.placement.gap - domain.clearance.smallest), 6) +
-                                   " mm");
-    }
+    require_above_ground(domain.clearance, o.placement);
     const Box at = bounding_box(placed(body, o.placement));
     const Box made = bounding_box(body);
     const double length = made.upper.x - made.lower.x, cell = o.cell * length;

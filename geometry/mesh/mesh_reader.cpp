@@ -23,6 +23,7 @@ namespace {
 core::Place at_byte(const std::string& file, std::size_t byte) {
     return {file, {}, {}, static_cast<std::int64_t>(byte)};
 }
+
 core::Place at_line(const std::string& file, std::size_t line) {
     return {file, static_cast<std::int64_t>(line), {}, {}};
 }
@@ -129,6 +130,14 @@ double number(std::string_view word, const core::Place& place) {
     return *value;
 }
 
+Vec3 point(Words& words, const core::Place& place) {
+    Vec3 p;
+    p.x = number(words.next(), place);
+    p.y = number(words.next(), place);
+    p.z = number(words.next(), place);
+    return p;
+}
+
 SurfaceMesh read_ascii_stl(std::string_view text, const std::string& file) {
     SurfaceMesh mesh;
     Joined joined(mesh);
@@ -146,10 +155,7 @@ SurfaceMesh read_ascii_stl(std::string_view text, const std::string& file) {
             in_solid = false;
         } else if (word == "vertex") {
             const core::Place place = at_line(file, words.line());
-            Vec3 p;
-            p.x = number(words.next(), place);
-            p.y = number(words.next(), place);
-            p.z = number(words.next(), place);
+            const Vec3 p = point(words, place);
             if (corners >= 3 || !in_solid) {
                 throw core::InputError("parse", "a vertex outside a triangle of three", place);
             }
@@ -194,6 +200,19 @@ void add_polygon(SurfaceMesh& mesh, const std::vector<std::int32_t>& corners, st
     }
 }
 
+/// Points of a face: counted from 1, or backwards from the last one so far.
+std::vector<std::int32_t> obj_face(Words& words, std::size_t points, const core::Place& place) {
+    std::vector<std::int32_t> corners;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+        const std::optional<long long> index = core::parse_integer(word.substr(0, word.find('/')));
+        if (!index || *index == 0) {
+            throw core::InputError("parse", "'" + std::string(word) + "' is not a point of a face", place);
+        }
+        corners.push_back(static_cast<std::int32_t>(*index > 0 ? *index - 1 : static_cast<long long>(points) + *index));
+    }
+    return corners;
+}
+
 SurfaceMesh read_obj(std::string_view text, const std::string& file) {
     SurfaceMesh mesh;
     std::int32_t patch = -1;
@@ -204,11 +223,7 @@ SurfaceMesh read_obj(std::string_view text, const std::string& file) {
         Words words(raw);
         const std::string_view kind = words.next();
         if (kind == "v") {
-            Vec3 p;
-            p.x = number(words.next(), place);
-            p.y = number(words.next(), place);
-            p.z = number(words.next(), place);
-            mesh.points.push_back(p);
+            mesh.points.push_back(point(words, place));
         } else if (kind == "g" || kind == "o") {
             const std::string name(words.rest_of_line());
             const auto found = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), name);
@@ -221,16 +236,7 @@ SurfaceMesh read_obj(std::string_view text, const std::string& file) {
                 mesh.patch_names.emplace_back("surface");
                 patch = 0;
             }
-            std::vector<std::int32_t> corners;
-            for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-                const std::optional<long long> index = core::parse_integer(word.substr(0, word.find('/')));
-                if (!index || *index == 0) {
-                    throw core::InputError("parse", "'" + std::string(word) + "' is not a point of a face", place);
-                }
-                corners.push_back(static_cast<std::int32_t>(
-                    *index > 0 ? *index - 1 : static_cast<long long>(mesh.points.size()) + *index));
-            }
-            add_polygon(mesh, corners, patch, place);
+            add_polygon(mesh, obj_face(words, mesh.points.size(), place), patch, place);
         }
     }
     return mesh;
@@ -301,54 +307,20 @@ bool is_ascii_stl(std::string_view bytes) {
            bytes.substr(0, std::min<std::size_t>(bytes.size(), 1000)).find('\0') == std::string_view::npos;
 }
 
-}  // namespace
-
-SurfaceMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
-    const MeshFormat format = mesh_format_of(path);
-    const core::MappedFile mapped(path);
-    const double scale = metres_per_unit(path, options.unit);
-    const std::string_view bytes = mapped.bytes();
-    SurfaceMesh mesh;
-    switch (format) {
-        case MeshFormat::stl_ascii:
-        case MeshFormat::stl_binary:
-            if (is_ascii_stl(bytes)) {
-                mesh = read_ascii_stl(bytes, mapped.name());
-            } else if (bytes.size() < 84) {
-                throw core::InputError("truncated",
-                                       "a binary STL has at least 84 bytes, this one " + std::to_string(bytes.size()),
-                                       at_byte(mapped.name(), bytes.size()), "the file was cut short: write it again");
-            } else {
-                mesh = read_binary_stl(bytes, mapped.name());
-            }
-            break;
-        case MeshFormat::obj:
-            mesh = read_obj(bytes, mapped.name());
-            break;
-        case MeshFormat::ply:
-            mesh = read_ply(bytes, mapped.name());
-            break;
-        case MeshFormat::vtp:
-            mesh = read_vtp(bytes, mapped.name());
-            break;
+SurfaceMesh read_stl(std::string_view bytes, const std::string& file) {
+    if (is_ascii_stl(bytes)) {
+        return read_ascii_stl(bytes, file);
     }
-    if (mesh.triangles.empty()) {
-        throw core::InputError("empty", "there is no triangle in it", {mapped.name(), {}, {}, {}});
+    if (bytes.size() < 84) {
+        throw core::InputError("truncated",
+                               "a binary STL has at least 84 bytes, this one " + std::to_string(bytes.size()),
+                               at_byte(file, bytes.size()), "the file was cut short: write it again");
     }
-    for (Vec3& p : mesh.points) {
-        p *= scale;
-    }
-    std::vector<char> used(mesh.patch_names.size(), 0);
-    for (const std::int32_t p : mesh.patch) {
-        used.at(static_cast<std::size_t>(p)) = 1;
-    }
-    if (std::accumulate(used.begin(), used.end(), 0) < 2) {
-        find_patches(mesh, options.feature_angle);
-    }
-    return mesh;
+    return read_binary_stl(bytes, file);
 }
 
-void find_patches(SurfaceMesh& mesh, double feature_angle) {
+/// Of each triangle, one that stands for all that hang together over edges flatter than an angle.
+std::vector<std::size_t> smooth_parts(const SurfaceMesh& mesh, double feature_angle) {
     const std::size_t count = mesh.triangles.size();
     std::vector<std::size_t> root(count);
     std::iota(root.begin(), root.end(), std::size_t{0});
@@ -382,14 +354,61 @@ void find_patches(SurfaceMesh& mesh, double feature_angle) {
             root[find(sides[i].triangle)] = find(sides[i + 1].triangle);
         }
     }
+    for (std::size_t t = 0; t < count; ++t) {
+        root[t] = find(t);
+    }
+    return root;
+}
+
+}  // namespace
+
+SurfaceMesh read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
+    const MeshFormat format = mesh_format_of(path);
+    const core::MappedFile mapped(path);
+    const double scale = metres_per_unit(path, options.unit);
+    const std::string_view bytes = mapped.bytes();
+    SurfaceMesh mesh;
+    switch (format) {
+        case MeshFormat::stl_ascii:
+        case MeshFormat::stl_binary:
+            mesh = read_stl(bytes, mapped.name());
+            break;
+        case MeshFormat::obj:
+            mesh = read_obj(bytes, mapped.name());
+            break;
+        case MeshFormat::ply:
+            mesh = read_ply(bytes, mapped.name());
+            break;
+        case MeshFormat::vtp:
+            mesh = read_vtp(bytes, mapped.name());
+            break;
+    }
+    if (mesh.triangles.empty()) {
+        throw core::InputError("empty", "there is no triangle in it", {mapped.name(), {}, {}, {}});
+    }
+    for (Vec3& p : mesh.points) {
+        p *= scale;
+    }
+    std::vector<char> used(mesh.patch_names.size(), 0);
+    for (const std::int32_t p : mesh.patch) {
+        used.at(static_cast<std::size_t>(p)) = 1;
+    }
+    if (std::accumulate(used.begin(), used.end(), 0) < 2) {
+        find_patches(mesh, options.feature_angle);
+    }
+    return mesh;
+}
+
+void find_patches(SurfaceMesh& mesh, double feature_angle) {
+    const std::vector<std::size_t> root = smooth_parts(mesh, feature_angle);
     struct Part {
         std::size_t root;
         double area = 0;
         Vec3 vector;
     };
     std::unordered_map<std::size_t, Part> parts;
-    for (std::size_t t = 0; t < count; ++t) {
-        Part& part = parts.try_emplace(find(t), Part{find(t), 0, {}}).first->second;
+    for (std::size_t t = 0; t < root.size(); ++t) {
+        Part& part = parts.try_emplace(root[t], Part{root[t], 0, {}}).first->second;
         part.area += norm(mesh.area_vector(t));
         part.vector += mesh.area_vector(t);
     }
@@ -414,8 +433,8 @@ void find_patches(SurfaceMesh& mesh, double feature_angle) {
             mesh.patch_names.push_back("patch_" + std::to_string(mesh.patch_names.size() + 1));
         }
     }
-    for (std::size_t t = 0; t < count; ++t) {
-        mesh.patch[t] = index[find(t)];
+    for (std::size_t t = 0; t < root.size(); ++t) {
+        mesh.patch[t] = index[root[t]];
     }
 }
 

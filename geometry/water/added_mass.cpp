@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/mass_properties.h"
+#include "geometry/water/above_ground.h"
 #include "geometry/water/source_panels.h"
 
 namespace underbody::geometry {
@@ -85,6 +86,28 @@ void balance_flux(const System& system, double parity, DenseMatrix& matrix, std:
     }
 }
 
+// Normal velocities at the centroids that sources of strength one on each panel make.
+void fill(DenseMatrix& matrix, const System& system, double parity, core::Progress& progress) {
+    const std::size_t n = system.panels.size();
+    core::parallel_blocks(
+        n, 16,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const SourcePanel& here = system.panels[i];
+                for (std::size_t j = 0; j < n; ++j) {
+                    const SourcePanel& panel = system.panels[j];
+                    // A mirrored panel seen from here is the panel seen from the mirrored place.
+                    matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                        with_images(system, parity, [&](bool in_y, bool in_z) {
+                            return dot(reflected(here.normal(), in_y, in_z),
+                                       panel.gradient(reflected(here.centre(), in_y, in_z)));
+                        });
+                }
+            }
+        },
+        progress);
+}
+
 // Strengths for the given normal velocities (columns), then potentials at the centroids.
 Eigen::MatrixXd potentials(const System& system, double parity, const Eigen::MatrixXd& velocities,
                            std::vector<double>& own, core::Progress& progress) {
@@ -92,23 +115,7 @@ Eigen::MatrixXd potentials(const System& system, double parity, const Eigen::Mat
     Eigen::MatrixXd strengths;
     {
         DenseMatrix matrix(n, n);
-        core::parallel_blocks(
-            n, 16,
-            [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) {
-                    const SourcePanel& here = system.panels[i];
-                    for (std::size_t j = 0; j < n; ++j) {
-                        const SourcePanel& panel = system.panels[j];
-                        // A mirrored panel seen from here is the panel seen from the mirrored place.
-                        matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                            with_images(system, parity, [&](bool in_y, bool in_z) {
-                                return dot(reflected(here.normal(), in_y, in_z),
-                                           panel.gradient(reflected(here.centre(), in_y, in_z)));
-                            });
-                    }
-                }
-            },
-            progress);
+        fill(matrix, system, parity, progress);
         balance_flux(system, parity, matrix, own);
         progress.check();
         Eigen::PartialPivLU<Eigen::Ref<DenseMatrix>> factors(matrix);  // in place: no second matrix
@@ -215,6 +222,24 @@ double edge_against_gap(const SurfaceMesh& mesh, double clearance) {
     return longest / clearance;
 }
 
+/// Panels of a body, or of its port half, the first `half` triangles, when the rest mirrors them.
+System system_of(const SurfaceMesh& body, std::size_t half, bool ground) {
+    System system;
+    system.mirrored = half > 0;
+    system.ground = ground;
+    const std::size_t count = half > 0 ? half : body.triangles.size();
+    if (count > 20000) {
+        throw core::InputError("size",
+                               std::to_string(count) + " unknowns would need a matrix of " +
+                                   std::to_string(count * count * 8 / 1'000'000'000) + " GB",
+                               {}, "take a mesh of fewer triangles");
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        system.panels.emplace_back(body.corner(i, 0), body.corner(i, 1), body.corner(i, 2));
+    }
+    return system;
+}
+
 }  // namespace
 
 AddedMass added_mass(const SurfaceMesh& mesh, const AddedMassOptions& options, core::Progress& progress) {
@@ -228,31 +253,11 @@ AddedMass added_mass(const SurfaceMesh& mesh, const AddedMassOptions& options, c
     const SurfaceMesh body = options.placement ? placed(mesh, placement) : mesh;
     if (options.placement) {
         const Clearance clear = clearance(mesh, placement);
-        if (clear.smallest <= 0) {
-            throw core::InputError("contact",
-                                   "the body's " + clear.patch + " is " +
-                                       core::format_number(-1000 * clear.smallest, 4) +
-                                       " mm below the ground at this gap and pitch",
-                                   {},
-                                   "the nearest allowed gap: above " +
-                                       core::format_number(1000 * (placement.gap - clear.smallest), 6) + " mm");
-        }
+        require_above_ground(clear, placement);
         result.edge_over_gap = edge_against_gap(body, clear.smallest);
     }
     const std::size_t half = placement.roll == 0 ? mirrored_count(mesh) : 0;
-    System system;
-    system.mirrored = half > 0;
-    system.ground = options.placement.has_value();
-    const std::size_t count = half > 0 ? half : mesh.triangles.size();
-    if (count > 20000) {
-        throw core::InputError("size",
-                               std::to_string(count) + " unknowns would need a matrix of " +
-                                   std::to_string(count * count * 8 / 1'000'000'000) + " GB",
-                               {}, "take a mesh of fewer triangles");
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        system.panels.emplace_back(body.corner(i, 0), body.corner(i, 1), body.corner(i, 2));
-    }
+    const System system = system_of(body, half, options.placement.has_value());
     Axes axes;
     const Placement turn{0, placement.pitch, placement.roll};
     axes.direction = {placed({1, 0, 0}, turn), placed({0, -1, 0}, turn), placed({0, 0, -1}, turn)};

@@ -116,13 +116,10 @@ core::Figure figure(const AreaBelow& below) {
     return figure;
 }
 
-core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
-    SurfaceMesh mesh = placed(body, placement);
-    const auto& names = mesh.patch_names;
-    if (std::find(names.begin(), names.end(), "nozzle_bore") != names.end()) {
-        // The end of a bore is no part of the gap, and its height would hide all else.
-        std::replace(mesh.patch_names.begin(), mesh.patch_names.end(), std::string("nozzle"), std::string("bore_end"));
-    }
+namespace {
+
+/// Extent of the under side in plan.
+Box underside_box(const SurfaceMesh& mesh) {
     Box box{{1e9, 1e9, 0}, {-1e9, -1e9, 0}};
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (is_underside(mesh.patch_names[static_cast<std::size_t>(mesh.patch[t])])) {
@@ -133,6 +130,39 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
             }
         }
     }
+    return box;
+}
+
+/// Puts the height of a triangle, in mm, into the cells whose middle lies over it; the lower one of two counts.
+void put_height(core::FigureMap& map, const Box& box, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double dx = (box.upper.x - box.lower.x) / static_cast<double>(map.columns),
+                 dy = (box.upper.y - box.lower.y) / static_cast<double>(map.rows);
+    const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    const auto cell = [](double v, double low, double step, std::size_t count) {
+        return static_cast<std::size_t>(std::clamp((v - low) / step, 0.0, static_cast<double>(count - 1)));
+    };
+    const std::size_t i0 = cell(std::min({a.x, b.x, c.x}), box.lower.x, dx, map.columns),
+                      i1 = cell(std::max({a.x, b.x, c.x}), box.lower.x, dx, map.columns);
+    const std::size_t j0 = cell(std::min({a.y, b.y, c.y}), box.lower.y, dy, map.rows),
+                      j1 = cell(std::max({a.y, b.y, c.y}), box.lower.y, dy, map.rows);
+    for (std::size_t j = j0; j <= j1; ++j) {
+        for (std::size_t i = i0; i <= i1; ++i) {
+            const double x = box.lower.x + (static_cast<double>(i) + 0.5) * dx,
+                         y = box.lower.y + (static_cast<double>(j) + 0.5) * dy;
+            const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / twice;
+            const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / twice;
+            constexpr double edge = 1e-9;  // a middle of a cell on the edge of two triangles belongs to both
+            if (u >= -edge && v >= -edge && u + v <= 1 + edge) {
+                double& value = map.values[j * map.columns + i];
+                const double gap = 1e3 * (a.z + u * (b.z - a.z) + v * (c.z - a.z));
+                value = std::isnan(value) ? gap : std::min(value, gap);
+            }
+        }
+    }
+}
+
+core::FigureMap gap_map(const SurfaceMesh& mesh) {
+    const Box box = underside_box(mesh);
     core::FigureMap map;
     map.columns = 480;
     map.rows = static_cast<std::size_t>(
@@ -142,35 +172,23 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
     map.values.assign(map.columns * map.rows, std::numeric_limits<double>::quiet_NaN());
     map.label = "gap";
     map.unit = "mm";
-    const double dx = (box.upper.x - box.lower.x) / static_cast<double>(map.columns),
-                 dy = (box.upper.y - box.lower.y) / static_cast<double>(map.rows);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (!is_underside(mesh.patch_names[static_cast<std::size_t>(mesh.patch[t])]) || mesh.area_vector(t).z >= 0) {
             continue;
         }
-        const Vec3 &a = mesh.corner(t, 0), &b = mesh.corner(t, 1), &c = mesh.corner(t, 2);
-        const double twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        const auto cell = [](double v, double low, double step, std::size_t count) {
-            return static_cast<std::size_t>(std::clamp((v - low) / step, 0.0, static_cast<double>(count - 1)));
-        };
-        const std::size_t i0 = cell(std::min({a.x, b.x, c.x}), box.lower.x, dx, map.columns),
-                          i1 = cell(std::max({a.x, b.x, c.x}), box.lower.x, dx, map.columns);
-        const std::size_t j0 = cell(std::min({a.y, b.y, c.y}), box.lower.y, dy, map.rows),
-                          j1 = cell(std::max({a.y, b.y, c.y}), box.lower.y, dy, map.rows);
-        for (std::size_t j = j0; j <= j1; ++j) {
-            for (std::size_t i = i0; i <= i1; ++i) {
-                const double x = box.lower.x + (static_cast<double>(i) + 0.5) * dx,
-                             y = box.lower.y + (static_cast<double>(j) + 0.5) * dy;
-                const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / twice;
-                const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / twice;
-                constexpr double edge = 1e-9;  // a middle of a cell on the edge of two triangles belongs to both
-                if (u >= -edge && v >= -edge && u + v <= 1 + edge) {
-                    double& value = map.values[j * map.columns + i];
-                    const double gap = 1e3 * (a.z + u * (b.z - a.z) + v * (c.z - a.z));
-                    value = std::isnan(value) ? gap : std::min(value, gap);
-                }
-            }
-        }
+        put_height(map, box, mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2));
+    }
+    return map;
+}
+
+}  // namespace
+
+core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
+    SurfaceMesh mesh = placed(body, placement);
+    const auto& names = mesh.patch_names;
+    if (std::find(names.begin(), names.end(), "nozzle_bore") != names.end()) {
+        // The end of a bore is no part of the gap, and its height would hide all else.
+        std::replace(mesh.patch_names.begin(), mesh.patch_names.end(), std::string("nozzle"), std::string("bore_end"));
     }
     const Clearance clear = clearance(body, placement);
     core::Figure figure;
@@ -181,7 +199,7 @@ core::Figure gap_figure(const SurfaceMesh& body, const Placement& placement) {
     figure.y = {"y, to port", "mm", 0, 0, false};
     figure.equal_scales = true;
     figure.legend = false;
-    figure.maps.push_back(map);
+    figure.maps.push_back(gap_map(mesh));
     core::FigurePoints point;
     point.x = {1e3 * clear.where.x};
     point.y = {1e3 * clear.where.y};

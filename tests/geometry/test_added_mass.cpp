@@ -8,11 +8,11 @@
 #include "geometry/body/body_surface.h"
 #include "geometry/body/certificate.h"
 #include "geometry/body/mass_properties.h"
-#include "geometry/body/primitives.h"
 #include "geometry/water/added_mass.h"
 #include "geometry/water/ellipsoid_added_mass.h"
 #include "geometry/water/panel_mesh.h"
 #include "geometry/water/source_panels.h"
+#include "tests/geometry/ellipsoid_surface.h"
 
 namespace underbody::geometry {
 namespace {

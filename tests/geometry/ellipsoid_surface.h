@@ -1,14 +1,19 @@
-#include "geometry/body/primitives.h"
+// A closed surface of known shape.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 #include "geometry/body/surface_builder.h"
+#include "geometry/mesh/surface_mesh.h"
 
 namespace underbody::geometry {
 
-SurfaceMesh ellipsoid_surface(double a, double b, double c, std::size_t triangles) {
+/// The whole ellipsoid about the origin, about so many triangles, points on it, symmetric in y to the last bit; patch
+/// `hull`.
+inline SurfaceMesh ellipsoid_surface(double a, double b, double c, std::size_t triangles) {
     constexpr double pi = std::numbers::pi;
     SurfaceMesh half;
     half.patch_names = {"hull"};
