@@ -147,11 +147,8 @@ const Importer* importer_for(const fs::path& path) {
     return nullptr;
 }
 
-Field read_field(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
-    const core::Place place{path.string(), {}, {}, {}};
-    core::note_content(path);
+void require_readable(const fs::path& path, const fs::file_status& status, const core::Place& place) {
     std::error_code error;
-    const auto status = fs::status(path, error);
     if (!fs::exists(status)) {
         std::vector<std::string> names;
         const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -167,6 +164,14 @@ Field read_field(const fs::path& path, const ReadOptions& options, core::Progres
             throw core::InputError("file", "the file cannot be read", place, "check its permissions");
         }
     }
+}
+
+Field read_field(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
+    const core::Place place{path.string(), {}, {}, {}};
+    core::note_content(path);
+    std::error_code error;
+    const auto status = fs::status(path, error);
+    require_readable(path, status, place);
     const Importer* importer = importer_for(path);
     if (importer == nullptr) {
         const std::string known = what_it_is(path);

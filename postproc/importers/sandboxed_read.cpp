@@ -99,6 +99,28 @@ std::string read_all(int pipe, pid_t child, core::Progress& progress) {
     }
 }
 
+/// What the child does, to its end.
+[[noreturn]] void run_child(const int (&ends)[2], std::uintmax_t size, const std::function<std::string()>& read) {
+    const core::InputScope unheard(nullptr);  // a lock that another thread of the parent held would stay locked here
+    ::close(ends[0]);
+    for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM, SIGXCPU}) {
+        ::signal(signal, SIG_DFL);
+    }
+    ::signal(SIGINT, SIG_IGN);  // the parent decides whether to go on
+    ::signal(SIGTERM, SIG_IGN);
+    limit(size);
+    std::freopen("/dev/null", "w", stderr);  // what a library says before it dies is of no use to anybody
+    int code = 0;
+    try {
+        write_all(ends[1], read());
+    } catch (const std::bad_alloc&) {
+        code = 2;
+    } catch (...) {
+        code = 0;  // refused in words: the reading proper says them
+    }
+    ::_exit(code);
+}
+
 }  // namespace
 
 std::string report_of_child(const std::filesystem::path& path, const std::function<std::string()>& read,
@@ -113,25 +135,7 @@ std::string report_of_child(const std::filesystem::path& path, const std::functi
         throw core::SystemError("process", "cannot start a process to try the file in", {path.string(), {}, {}, {}});
     }
     if (child == 0) {
-        const core::InputScope unheard(
-            nullptr);  // a lock that another thread of the parent held would stay locked here
-        ::close(ends[0]);
-        for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGALRM, SIGXCPU}) {
-            ::signal(signal, SIG_DFL);
-        }
-        ::signal(SIGINT, SIG_IGN);  // the parent decides whether to go on
-        ::signal(SIGTERM, SIG_IGN);
-        limit(error ? 0 : size);
-        std::freopen("/dev/null", "w", stderr);  // what a library says before it dies is of no use to anybody
-        int code = 0;
-        try {
-            write_all(ends[1], read());
-        } catch (const std::bad_alloc&) {
-            code = 2;
-        } catch (...) {
-            code = 0;  // refused in words: the reading proper says them
-        }
-        ::_exit(code);
+        run_child(ends, error ? 0 : size, read);
     }
     ::close(ends[1]);
     std::string report = read_all(ends[0], child, progress);

@@ -197,6 +197,24 @@ private:
         return zones;
     }
 
+    /// On what the pressures that are integrated lie, for people.
+    void say_where_values_are() {
+        std::vector<std::string> from;
+        for (const auto& part : parts_) {
+            std::string word = part.values.pressure_on_nodes ? "nodes" : "faces";
+            if (const auto* info = part.zone->find("pressure"); info != nullptr && info->on == Location::cells) {
+                word = "cells";
+            }
+            if (std::find(from.begin(), from.end(), word) == from.end()) {
+                from.push_back(word);
+            }
+        }
+        std::sort(from.begin(), from.end());
+        for (const auto& word : from) {
+            result_.values_from += (result_.values_from.empty() ? "" : ", ") + word;
+        }
+    }
+
     void choose_zones() {
         for (const Zone* zone : wanted_zones()) {
             if (!is_surface(*zone)) {
@@ -223,20 +241,7 @@ private:
         }
         bring_to_one_reference();
         settle_doubled_zones();
-        std::vector<std::string> from;
-        for (const auto& part : parts_) {
-            std::string word = part.values.pressure_on_nodes ? "nodes" : "faces";
-            if (const auto* info = part.zone->find("pressure"); info != nullptr && info->on == Location::cells) {
-                word = "cells";
-            }
-            if (std::find(from.begin(), from.end(), word) == from.end()) {
-                from.push_back(word);
-            }
-        }
-        std::sort(from.begin(), from.end());
-        for (const auto& word : from) {
-            result_.values_from += (result_.values_from.empty() ? "" : ", ") + word;
-        }
+        say_where_values_are();
     }
 
     /// Some of the faces of a part, with the points that these use.
@@ -400,6 +405,37 @@ private:
         return part.polygons->GetPointData()->GetArray(name);
     }
 
+    [[noreturn]] void refuse_without_pressure(const Part& part) const {
+        std::vector<std::string> names;
+        for (const auto& info : part.zone->arrays) {
+            names.push_back(info.name);
+        }
+        const auto without_unit =
+            std::find_if(part.zone->arrays.begin(), part.zone->arrays.end(), [](const ArrayInfo& info) {
+                return info.components == 1 && info.name == unstated_name(info.original_name);
+            });
+        if (without_unit != part.zone->arrays.end()) {
+            const std::string& name = without_unit->original_name;
+            throw InputError("missing",
+                             "zone '" + part.zone->name + "' has no pressure but '" + name +
+                                 "', of which the file does not say the unit",
+                             place(),
+                             "say it: option 'unit " + name + "=Pa', or of p/rho option 'unit " + name +
+                                 "=m^2/s^2' with option 'density'");
+        }
+        if (names.empty()) {
+            throw InputError(
+                "missing", "zone '" + part.zone->name + "' has no pressure, nor any other values: this is a mesh alone",
+                place(),
+                field_.format.starts_with("Fluent")
+                    ? "no results lie beside it under its name; give the results file (.dat, .dat.h5), with option "
+                      "'mesh' if the mesh has another name"
+                    : "give the file that the solver's results are in");
+        }
+        throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(),
+                         core::did_you_mean("pressure", names));
+    }
+
     void take_pressure(Part& part) {
         bool on_nodes = true;
         double scale = 1;
@@ -420,35 +456,7 @@ private:
             part.absolute = array != nullptr;
         }
         if (array == nullptr) {
-            std::vector<std::string> names;
-            for (const auto& info : part.zone->arrays) {
-                names.push_back(info.name);
-            }
-            const auto without_unit =
-                std::find_if(part.zone->arrays.begin(), part.zone->arrays.end(), [](const ArrayInfo& info) {
-                    return info.components == 1 && info.name == unstated_name(info.original_name);
-                });
-            if (without_unit != part.zone->arrays.end()) {
-                const std::string& name = without_unit->original_name;
-                throw InputError("missing",
-                                 "zone '" + part.zone->name + "' has no pressure but '" + name +
-                                     "', of which the file does not say the unit",
-                                 place(),
-                                 "say it: option 'unit " + name + "=Pa', or of p/rho option 'unit " + name +
-                                     "=m^2/s^2' with option 'density'");
-            }
-            if (names.empty()) {
-                throw InputError(
-                    "missing",
-                    "zone '" + part.zone->name + "' has no pressure, nor any other values: this is a mesh alone",
-                    place(),
-                    field_.format.starts_with("Fluent")
-                        ? "no results lie beside it under its name; give the results file (.dat, .dat.h5), with option "
-                          "'mesh' if the mesh has another name"
-                        : "give the file that the solver's results are in");
-            }
-            throw InputError("missing", "zone '" + part.zone->name + "' has no pressure", place(),
-                             core::did_you_mean("pressure", names));
+            refuse_without_pressure(part);
         }
         part.values.pressure = summed_values(part, *array, on_nodes, part.own_pressure);
         if (scale != 1) {

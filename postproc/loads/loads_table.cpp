@@ -127,6 +127,69 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases,
     return result;
 }
 
+/// Quantities that some case has, each with its sigma where one is stated.
+void add_quantities(core::Table& table, const std::vector<LoadsCase>& cases) {
+    std::vector<std::vector<LoadsColumn>> rows;
+    for (const auto& one : cases) {
+        rows.push_back(table_columns(one.loads));
+    }
+    for (const auto& column : all_columns()) {
+        std::vector<double> values;
+        std::vector<double> sigmas;
+        bool any = false;
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            const auto found = std::find_if(rows[i].begin(), rows[i].end(),
+                                            [&](const LoadsColumn& c) { return c.name == column.name; });
+            any = any || found != rows[i].end();
+            values.push_back(found != rows[i].end() ? found->value : std::numeric_limits<double>::quiet_NaN());
+            sigmas.push_back(value_of(cases[i].sigmas, column.name, std::numeric_limits<double>::quiet_NaN()));
+        }
+        if (any) {
+            table.add_numbers(column.name, column.unit, std::move(values));
+        }
+        if (any &&
+            std::any_of(cases.begin(), cases.end(), [&](const LoadsCase& c) { return has(c.sigmas, column.name); })) {
+            table.add_numbers(column.name + "_sigma", column.unit, std::move(sigmas));
+        }
+    }
+}
+
+/// Depth, solver or file that the numbers come from, how settled they are, and the file.
+void add_origins(core::Table& table, const std::vector<LoadsCase>& cases) {
+    std::vector<std::string> files;
+    std::vector<std::string> origins;
+    for (const auto& one : cases) {
+        files.push_back(one.file);
+        origins.push_back(one.loads.values_from);
+        std::replace(origins.back().begin(), origins.back().end(), ',', ' ');
+    }
+    if (!cases.empty() && !cases.front().loads.depth.empty()) {
+        table.add_text("depth", std::vector<std::string>(cases.size(), cases.front().loads.depth));
+    }
+    table.add_text("values_from", std::move(origins));
+    if (!cases.empty()) {
+        std::vector<std::string> verdicts;
+        for (const auto& one : cases) {
+            verdicts.push_back(to_string(one.settled.verdict));
+        }
+        table.add_text("settled", std::move(verdicts));
+    }
+    table.add_text("file", std::move(files));
+}
+
+/// What makes numbers less than they seem goes with them.
+void add_warnings(core::Table& table, const std::vector<LoadsCase>& cases) {
+    core::BatchProblems warnings;  // what makes numbers less than they seem goes with them
+    for (const auto& one : cases) {
+        warnings.add(one.file, one.loads.problems);
+    }
+    for (const auto& problem : warnings.gathered(false)) {
+        if (problem.severity != core::Problem::Severity::note) {
+            table.comments.push_back("warning: " + problem.place.file + ": " + problem.message);
+        }
+    }
+}
+
 core::Table loads_table(const std::vector<LoadsCase>& cases,
                         const std::vector<std::pair<std::string, std::string>>& written_units) {
     refuse_mixed_depths(cases);
@@ -155,57 +218,9 @@ core::Table loads_table(const std::vector<LoadsCase>& cases,
         const std::string written = value_of(written_units, name, std::string());
         table.add_numbers(free_name(name), si_unit_of(name, written), std::move(values), written);
     }
-    std::vector<std::vector<LoadsColumn>> rows;
-    for (const auto& one : cases) {
-        rows.push_back(table_columns(one.loads));
-    }
-    for (const auto& column : all_columns()) {
-        std::vector<double> values;
-        std::vector<double> sigmas;
-        bool any = false;
-        for (std::size_t i = 0; i < cases.size(); ++i) {
-            const auto found = std::find_if(rows[i].begin(), rows[i].end(),
-                                            [&](const LoadsColumn& c) { return c.name == column.name; });
-            any = any || found != rows[i].end();
-            values.push_back(found != rows[i].end() ? found->value : std::numeric_limits<double>::quiet_NaN());
-            sigmas.push_back(value_of(cases[i].sigmas, column.name, std::numeric_limits<double>::quiet_NaN()));
-        }
-        if (any) {
-            table.add_numbers(column.name, column.unit, std::move(values));
-        }
-        if (any &&
-            std::any_of(cases.begin(), cases.end(), [&](const LoadsCase& c) { return has(c.sigmas, column.name); })) {
-            table.add_numbers(column.name + "_sigma", column.unit, std::move(sigmas));
-        }
-    }
-    std::vector<std::string> files;
-    std::vector<std::string> origins;
-    for (const auto& one : cases) {
-        files.push_back(one.file);
-        origins.push_back(one.loads.values_from);
-        std::replace(origins.back().begin(), origins.back().end(), ',', ' ');
-    }
-    if (!cases.empty() && !cases.front().loads.depth.empty()) {
-        table.add_text("depth", std::vector<std::string>(cases.size(), cases.front().loads.depth));
-    }
-    table.add_text("values_from", std::move(origins));
-    if (!cases.empty()) {
-        std::vector<std::string> verdicts;
-        for (const auto& one : cases) {
-            verdicts.push_back(to_string(one.settled.verdict));
-        }
-        table.add_text("settled", std::move(verdicts));
-    }
-    table.add_text("file", std::move(files));
-    core::BatchProblems warnings;  // what makes numbers less than they seem goes with them
-    for (const auto& one : cases) {
-        warnings.add(one.file, one.loads.problems);
-    }
-    for (const auto& problem : warnings.gathered(false)) {
-        if (problem.severity != core::Problem::Severity::note) {
-            table.comments.push_back("warning: " + problem.place.file + ": " + problem.message);
-        }
-    }
+    add_quantities(table, cases);
+    add_origins(table, cases);
+    add_warnings(table, cases);
     return table;
 }
 

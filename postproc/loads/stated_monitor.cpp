@@ -112,10 +112,6 @@ std::optional<FieldRow> row_of_field(const Monitor& monitor, const LoadsResult& 
                                                                    : std::optional(FieldRow{index, *row});
 }
 
-}  // namespace
-
-namespace {
-
 /// N (moments: N m) that a coefficient of 1 stands for.
 double reference_of(const MonitorSource& source, const Monitor& monitor, const LoadsResult& result, bool moment) {
     const auto& own = monitor.coefficients;
@@ -153,25 +149,51 @@ void take_direction(const Monitor& monitor, StatedLoad& load) {
     load.centre = monitor.coefficients->centre.value_or(load.centre);
 }
 
+/// The only column of values, when none is named.
+std::string only_column(const Monitor& monitor, const MonitorSource& source) {
+    std::vector<std::string> candidates(monitor.columns.begin() + 1, monitor.columns.end());
+    std::erase_if(candidates, [](const std::string& name) { return is_clock(name); });
+    if (candidates.empty()) {
+        throw InputError("missing", "the monitor has no column of values, only '" + monitor.columns.front() + "'",
+                         {monitor.file, {}, {}, {}});
+    }
+    if (candidates.size() > 1) {
+        throw InputError("missing", "the monitor has several columns: which one is " + source.quantity + "?",
+                         {monitor.file, {}, {}, {}},
+                         core::did_you_mean("", candidates) + "; say option 'monitor " + source.quantity + "=" +
+                             source.file + ":COLUMN'");
+    }
+    return candidates.front();
+}
+
+/// Direction and centre of the load that a quantity is.
+void take_axis(const std::string& quantity, const LoadsResult& result, StatedLoad& load) {
+    const auto axes = named_axes(result);
+    const auto& axis = *std::find_if(axes.begin(), axes.end(), [&](const NamedAxis& a) { return a.name == quantity; });
+    load.moment = axis.moment;
+    load.direction = axis.direction;
+    load.centre = result.reference;
+}
+
+void take_scatter(const Monitor& monitor, const std::string& column, const std::vector<double>& history,
+                  StatedLoad& load) {
+    try {
+        if (load.later == 0 || history.size() >= shortest_history) {
+            load.history = iteration_scatter(history);
+        }
+    } catch (const InputError& error) {
+        throw InputError(error.kind(), "column '" + column + "': " + error.message(), {monitor.file, {}, {}, {}},
+                         error.hint());
+    }
+}
+
 }  // namespace
 
 StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& result) {
     const Monitor monitor = read_monitor(source.file);
     std::string column = source.column;
     if (column.empty()) {
-        std::vector<std::string> candidates(monitor.columns.begin() + 1, monitor.columns.end());
-        std::erase_if(candidates, [](const std::string& name) { return is_clock(name); });
-        if (candidates.empty()) {
-            throw InputError("missing", "the monitor has no column of values, only '" + monitor.columns.front() + "'",
-                             {monitor.file, {}, {}, {}});
-        }
-        if (candidates.size() > 1) {
-            throw InputError("missing", "the monitor has several columns: which one is " + source.quantity + "?",
-                             {monitor.file, {}, {}, {}},
-                             core::did_you_mean("", candidates) + "; say option 'monitor " + source.quantity + "=" +
-                                 source.file + ":COLUMN'");
-        }
-        column = candidates.front();
+        column = only_column(monitor, source);
     }
     const auto* values = monitor.find(column);
     if (values == nullptr) {
@@ -187,12 +209,7 @@ StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& res
     StatedLoad load;
     load.file = monitor.file;
     load.quantity = source.quantity;
-    const auto axes = named_axes(result);
-    const auto& axis =
-        *std::find_if(axes.begin(), axes.end(), [&](const NamedAxis& a) { return a.name == source.quantity; });
-    load.moment = axis.moment;
-    load.direction = axis.direction;
-    load.centre = result.reference;
+    take_axis(source.quantity, result, load);
     if (source.coefficient) {
         const double reference = reference_of(source, monitor, result, load.moment);
         std::for_each(history.begin(), history.end(), [&](double& value) { value *= reference; });
@@ -203,14 +220,7 @@ StatedLoad stated_by_monitor(const MonitorSource& source, const LoadsResult& res
         load.later = history.size() - row->index - 1;
         history.resize(row->index + 1);
     }
-    try {
-        if (load.later == 0 || history.size() >= shortest_history) {
-            load.history = iteration_scatter(history);
-        }
-    } catch (const InputError& error) {
-        throw InputError(error.kind(), "column '" + column + "': " + error.message(), {monitor.file, {}, {}, {}},
-                         error.hint());
-    }
+    take_scatter(monitor, column, history, load);
     load.value = history.back();
     return load;
 }

@@ -85,44 +85,10 @@ void sort_by_time(Run& run, core::Problems& notes) {
     check_times(times, files, notes);
 }
 
-LoadsCase mean_of(Run run, core::Problems& notes) {
-    sort_by_time(run, notes);
-    LoadsCase result = *run.back();
-    mean_named(result.loads.named, run, &LoadsResult::named);
-    mean_named(result.loads.named_pressure, run, &LoadsResult::named_pressure);
-    mean_named(result.loads.named_viscous, run, &LoadsResult::named_viscous);
-    mean_wrench(result.loads.total, run, [](const LoadsResult& loads) -> const Wrench& { return loads.total; });
-    mean_wrench(result.loads.pressure, run, [](const LoadsResult& loads) -> const Wrench& { return loads.pressure; });
-    mean_wrench(result.loads.viscous, run, [](const LoadsResult& loads) -> const Wrench& { return loads.viscous; });
-    if (result.loads.coefficients) {
-        for (double LoadsCoefficients::*which :
-             {&LoadsCoefficients::lift, &LoadsCoefficients::drag, &LoadsCoefficients::pitch_moment}) {
-            double sum = 0;
-            for (const LoadsCase* one : run) {
-                sum += one->loads.coefficients ? (*one->loads.coefficients).*which : std::nan("");
-            }
-            (*result.loads.coefficients).*which = sum / static_cast<double>(run.size());
-        }
-    }
-    result.loads.zones.clear();  // of one instant
-    result.loads.stations.clear();
-    result.loads.centre_of_pressure.reset();
-    result.loads.time.reset();
-    result.comparisons.clear();
-    result.scatters.clear();
-    std::erase_if(result.numbers, [](const auto& entry) { return is_result(entry.first); });  // stated of one instant
-    for (const LoadsCase* one : run) {
-        result.loads.closure = std::max(result.loads.closure, one->loads.closure);
-        for (const core::Problem& problem : one->loads.problems) {
-            const auto& known = result.loads.problems;
-            if (std::none_of(known.begin(), known.end(),
-                             [&](const core::Problem& p) { return p.message == problem.message; })) {
-                result.loads.problems.push_back(problem);
-            }
-        }
-    }
+/// Forces and moments of the run, one history each.
+std::vector<TimeHistory> histories_of(const LoadsResult& like, const Run& run) {
     std::vector<TimeHistory> histories;
-    for (const auto& column : table_row(result.loads)) {
+    for (const auto& column : table_row(like)) {
         if (column.unit != "N" && column.unit != "N m") {
             continue;
         }
@@ -134,6 +100,55 @@ LoadsCase mean_of(Run run, core::Problems& notes) {
                                               })->value);
         }
     }
+    return histories;
+}
+
+void mean_coefficients(LoadsResult& loads, const Run& run) {
+    if (loads.coefficients) {
+        for (double LoadsCoefficients::*which :
+             {&LoadsCoefficients::lift, &LoadsCoefficients::drag, &LoadsCoefficients::pitch_moment}) {
+            double sum = 0;
+            for (const LoadsCase* one : run) {
+                sum += one->loads.coefficients ? (*one->loads.coefficients).*which : std::nan("");
+            }
+            (*loads.coefficients).*which = sum / static_cast<double>(run.size());
+        }
+    }
+}
+
+/// What is of one instant.
+void leave_out_instant(LoadsCase& result) {
+    result.loads.zones.clear();  // of one instant
+    result.loads.stations.clear();
+    result.loads.centre_of_pressure.reset();
+    result.loads.time.reset();
+    result.comparisons.clear();
+    result.scatters.clear();
+    std::erase_if(result.numbers, [](const auto& entry) { return is_result(entry.first); });  // stated of one instant
+}
+
+LoadsCase mean_of(Run run, core::Problems& notes) {
+    sort_by_time(run, notes);
+    LoadsCase result = *run.back();
+    mean_named(result.loads.named, run, &LoadsResult::named);
+    mean_named(result.loads.named_pressure, run, &LoadsResult::named_pressure);
+    mean_named(result.loads.named_viscous, run, &LoadsResult::named_viscous);
+    mean_wrench(result.loads.total, run, [](const LoadsResult& loads) -> const Wrench& { return loads.total; });
+    mean_wrench(result.loads.pressure, run, [](const LoadsResult& loads) -> const Wrench& { return loads.pressure; });
+    mean_wrench(result.loads.viscous, run, [](const LoadsResult& loads) -> const Wrench& { return loads.viscous; });
+    mean_coefficients(result.loads, run);
+    leave_out_instant(result);
+    for (const LoadsCase* one : run) {
+        result.loads.closure = std::max(result.loads.closure, one->loads.closure);
+        for (const core::Problem& problem : one->loads.problems) {
+            const auto& known = result.loads.problems;
+            if (std::none_of(known.begin(), known.end(),
+                             [&](const core::Problem& p) { return p.message == problem.message; })) {
+                result.loads.problems.push_back(problem);
+            }
+        }
+    }
+    const std::vector<TimeHistory> histories = histories_of(result.loads, run);
     const double force =
         std::hypot(result.loads.named.lift_force, result.loads.named.drag_force, result.loads.named.side_force);
     TimeMeans means = time_means(histories, force, result.loads.length, result.file);

@@ -91,6 +91,39 @@ void two_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncert
         "two meshes: order " + core::format_number(formal_order, 3) + " assumed, safety factor 3, " + gci_of(result);
 }
 
+/// Differences that shrink with the mesh, all to one side (Celik 2008).
+void monotone_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
+    const double e21 = v[1].value - v[0].value;
+    const double e32 = v[2].value - v[1].value;
+    const double r21 = v[1].size / v[0].size;
+    const double r32 = v[2].size / v[1].size;
+    result.verdict = MeshVerdict::monotone;
+    const double p = e21 == 0 ? nan : celik_order(e21, e32, r21, r32);
+    result.observed_order = p;
+    const bool too_good = !(p <= formal_order);
+    constexpr double least_order = 0.1;
+    result.used_order = too_good ? formal_order : std::max(p, least_order);
+    const double factor21 = std::pow(r21, result.used_order) - 1;
+    const double factor32 = std::pow(r32, result.used_order) - 1;
+    result.extrapolated = v[0].value - e21 / factor21;
+    const double error = std::abs(e21) / factor21;
+    // Two meshes that agree better than their order allows agree by luck: then the coarser pair's difference counts.
+    const double by_coarser = std::abs(e32) / factor32 / (factor21 + 1);
+    result.expanded_uncertainty = 1.25 * (too_good ? std::max(error, by_coarser) : error);
+    result.standard_uncertainty = result.expanded_uncertainty / 2;
+    result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
+    result.gci_coarse = v[1].value != 0 ? 1.25 * std::abs(e32 / v[1].value) / factor32 : nan;
+    const double finer_alone = v[0].value != 0 ? 1.25 * error / std::abs(v[0].value) : nan;
+    result.asymptotic_ratio = finer_alone > 0 ? result.gci_coarse / ((factor21 + 1) * finer_alone) : nan;
+    result.text = "monotone convergence, " +
+                  (std::isfinite(p) ? "observed order " + core::format_number(p, 3)
+                                    : std::string("the finest two meshes agree")) +
+                  (too_good          ? " (order " + core::format_number(formal_order, 3) + " and the coarser pair used)"
+                   : p < least_order ? " (order " + core::format_number(least_order, 3) + " used)"
+                                     : "") +
+                  ", " + gci_of(result);
+}
+
 void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUncertainty& result) {
     const double e21 = v[1].value - v[0].value;
     const double e32 = v[2].value - v[1].value;
@@ -119,31 +152,7 @@ void three_meshes(const std::vector<MeshValue>& v, double formal_order, MeshUnce
                          core::format_number(range, 3) + ", is the interval");
         return;
     }
-    result.verdict = MeshVerdict::monotone;
-    const double p = e21 == 0 ? nan : celik_order(e21, e32, r21, r32);
-    result.observed_order = p;
-    const bool too_good = !(p <= formal_order);
-    constexpr double least_order = 0.1;
-    result.used_order = too_good ? formal_order : std::max(p, least_order);
-    const double factor21 = std::pow(r21, result.used_order) - 1;
-    const double factor32 = std::pow(r32, result.used_order) - 1;
-    result.extrapolated = v[0].value - e21 / factor21;
-    const double error = std::abs(e21) / factor21;
-    // Two meshes that agree better than their order allows agree by luck: then the coarser pair's difference counts.
-    const double by_coarser = std::abs(e32) / factor32 / (factor21 + 1);
-    result.expanded_uncertainty = 1.25 * (too_good ? std::max(error, by_coarser) : error);
-    result.standard_uncertainty = result.expanded_uncertainty / 2;
-    result.gci_fine = v[0].value != 0 ? result.expanded_uncertainty / std::abs(v[0].value) : nan;
-    result.gci_coarse = v[1].value != 0 ? 1.25 * std::abs(e32 / v[1].value) / factor32 : nan;
-    const double finer_alone = v[0].value != 0 ? 1.25 * error / std::abs(v[0].value) : nan;
-    result.asymptotic_ratio = finer_alone > 0 ? result.gci_coarse / ((factor21 + 1) * finer_alone) : nan;
-    result.text = "monotone convergence, " +
-                  (std::isfinite(p) ? "observed order " + core::format_number(p, 3)
-                                    : std::string("the finest two meshes agree")) +
-                  (too_good          ? " (order " + core::format_number(formal_order, 3) + " and the coarser pair used)"
-                   : p < least_order ? " (order " + core::format_number(least_order, 3) + " used)"
-                                     : "") +
-                  ", " + gci_of(result);
+    monotone_meshes(v, formal_order, result);
 }
 
 // ---- more than three: least squares after Eça and Hoekstra ----

@@ -135,6 +135,104 @@ std::string suspicion(const std::vector<double>& differences) {
            " Pa: is one of the two an absolute pressure?";
 }
 
+/// Surfaces of the second case with the difference as their values, and what is known of it.
+struct Differences {
+    std::vector<DrawnSurface> surfaces;
+    std::vector<double> all, on_base;
+    double furthest = 0;  ///< m, between the two surfaces
+    double apart = 0;     ///< m: beyond this there is nothing to compare with, another shape, not another mesh
+};
+
+/// Values of the second case less those of the first, which is moved by `shift`, and less `level`.
+Differences differences(const ViewComposer& from, const ViewComposer& to, const std::string& array, const Point& shift,
+                        double level, const std::string& file, const ViewOptions& options, core::Progress& progress) {
+    std::vector<std::pair<std::string, std::unique_ptr<Lookup>>> lookups;
+    for (const Zone* zone : from.zones()) {
+        lookups.emplace_back(zone->name, std::make_unique<Lookup>(std::vector<const Zone*>{zone}, array, shift));
+    }
+    Lookup everywhere(from.zones(), array, shift);
+    Differences result;
+    result.apart = 0.02 * diagonal(to.whole_body());
+    for (const Zone* zone : to.zones()) {
+        progress.check();
+        DrawnSurface surface = drawn_surface(*zone, array);
+        // Zones of one name are compared with each other: at an edge two zones have different values at one place.
+        const auto same =
+            std::find_if(lookups.begin(), lookups.end(), [&](const auto& entry) { return entry.first == zone->name; });
+        Lookup& lookup = same == lookups.end() ? everywhere : *same->second;
+        if (surface.values.empty() || lookup.empty()) {
+            throw core::InputError("missing", "'" + array + "' is not on the surface of both cases",
+                                   {file, {}, {}, {}});
+        }
+        for (std::size_t i = 0; i < surface.points.size(); ++i) {
+            double distance = 0;
+            double& value = surface.values[i];
+            value -= lookup.at(surface.points[i], distance) + level;
+            result.furthest = std::max(result.furthest, distance);
+            if (distance > result.apart) {
+                value = std::nan("");
+            } else if (std::isfinite(value)) {
+                result.all.push_back(value);
+                if (matches(options.base, zone->name)) {
+                    result.on_base.push_back(value);
+                }
+            }
+        }
+        surface.contours = 12;
+        mirror_into(surface, to.mirror());
+        result.surfaces.push_back(std::move(surface));
+    }
+    return result;
+}
+
+/// Values of the base beyond the colours.
+std::string extremes_of(const std::vector<double>& on_base, const std::pair<double, double>& range,
+                        const std::string& unit) {
+    std::string extremes;
+    if (const auto [lowest, highest] = std::minmax_element(on_base.begin(), on_base.end());
+        !on_base.empty() && (*lowest < range.first || *highest > range.second)) {
+        extremes = " The base has from " + core::format_number(*lowest, 4) + " to " + core::format_number(*highest, 4) +
+                   " " + unit + ": beyond the ends of the colours.";
+    }
+    return extremes;
+}
+
+std::string caption_of(const Differences& found, const Point& shift, const std::string& seen, bool vectors,
+                       const std::string& rest) {
+    return "The second case less the first, " + seen + "; the first was moved by (" +
+           core::format_number(1000 * shift[0], 3) + ", " + core::format_number(1000 * shift[1], 3) + ", " +
+           core::format_number(1000 * shift[2], 3) +
+           ") mm so that the bases lie on each other; the surfaces then lie at most " +
+           core::format_number(1000 * found.furthest, 2) + " mm apart" +
+           (found.furthest > found.apart
+                ? "; grey where that is more than " + core::format_number(1000 * found.apart, 2) +
+                      " mm: nothing is compared there."
+                : std::string(".")) +
+           (vectors ? " The sizes of the vectors are compared, not their directions." : "") + rest;
+}
+
+/// Colours about zero, over the values of the base unless a range was asked for.
+void take_colours(Scene& scene, const Differences& found, const ViewOptions& options, const std::string& unit,
+                  const std::string& file) {
+    const std::vector<double>& on_base = found.on_base;
+    scene.colours = ColourMap::diverging;
+    if (!on_base.empty()) {
+        std::string cut;  // the ends below are those of the colours about zero
+        scene.range = robust_colour_range(on_base, cut, unit);
+    }
+    for (const auto& [key, given] : options.ranges) {  // the last counts
+        scene.range = given;
+    }
+    const auto values = range_of(scene);
+    if (!(values.first <= values.second)) {
+        throw core::InputError(
+            "range",
+            "the two bodies lie nowhere within " + core::format_number(1000 * found.apart, 2) + " mm of each other",
+            {file, {}, {}, {}});
+    }
+    scene.range = drawn_range(values, scene.colours);
+}
+
 ComposedView composed_difference(const Field& a, const Field& b, const std::string& array, const ViewOptions& options,
                                  core::Progress& progress) {
     check_ranges(options, {"difference", "difference-" + array});
@@ -148,76 +246,22 @@ ComposedView composed_difference(const Field& a, const Field& b, const std::stri
     if (to.mirror().axis >= 0) {  // half a base has its centre where it ends; the planes of both go onto each other
         shift[static_cast<std::size_t>(to.mirror().axis)] = to.mirror().at - from.mirror().at;
     }
-    std::vector<std::pair<std::string, std::unique_ptr<Lookup>>> lookups;
-    for (const Zone* zone : from.zones()) {
-        lookups.emplace_back(zone->name, std::make_unique<Lookup>(std::vector<const Zone*>{zone}, array, shift));
-    }
-    Lookup everywhere(from.zones(), array, shift);
     if (to.zones().empty() || from.zones().empty()) {
         const Field& bare = to.zones().empty() ? b : a;
         throw core::InputError("zone", "there is no surface of a body to compare on",
                                {bare.files.empty() ? "" : bare.files.front(), {}, {}, {}},
                                "name its zones (option 'zones')");
     }
-    // Beyond this there is nothing to compare with: another shape, not another mesh.
-    const double apart = 0.02 * diagonal(to.whole_body());
+    Differences found =
+        differences(from, to, array, shift, level.shift, b.files.empty() ? "" : b.files.front(), options, progress);
+    const std::vector<double>& on_base = found.on_base;
     ComposedView composed;
-    double furthest = 0;
-    std::vector<double> on_base;
-    std::vector<double> all;
-    for (const Zone* zone : to.zones()) {
-        progress.check();
-        DrawnSurface surface = drawn_surface(*zone, array);
-        // Zones of one name are compared with each other: at an edge two zones have different values at one place.
-        const auto same =
-            std::find_if(lookups.begin(), lookups.end(), [&](const auto& entry) { return entry.first == zone->name; });
-        Lookup& lookup = same == lookups.end() ? everywhere : *same->second;
-        if (surface.values.empty() || lookup.empty()) {
-            throw core::InputError("missing", "'" + array + "' is not on the surface of both cases",
-                                   {b.files.empty() ? "" : b.files.front(), {}, {}, {}});
-        }
-        for (std::size_t i = 0; i < surface.points.size(); ++i) {
-            double distance = 0;
-            double& value = surface.values[i];
-            value -= lookup.at(surface.points[i], distance) + level.shift;
-            furthest = std::max(furthest, distance);
-            if (distance > apart) {
-                value = std::nan("");
-            } else if (std::isfinite(value)) {
-                all.push_back(value);
-                if (matches(options.base, zone->name)) {
-                    on_base.push_back(value);
-                }
-            }
-        }
-        surface.contours = 12;
-        mirror_into(surface, to.mirror());
-        composed.scene.surfaces.push_back(std::move(surface));
-    }
+    composed.scene.surfaces = std::move(found.surfaces);
     Scene& scene = composed.scene;
-    scene.colours = ColourMap::diverging;
     const auto* info = to.zones().front()->find(array);
     const std::string unit = info == nullptr ? "Pa" : info->unit;
-    if (!on_base.empty()) {
-        std::string cut;  // the ends below are those of the colours about zero
-        scene.range = robust_colour_range(on_base, cut, unit);
-    }
-    for (const auto& [key, given] : options.ranges) {  // the last counts
-        scene.range = given;
-    }
-    const auto values = range_of(scene);
-    if (!(values.first <= values.second)) {
-        throw core::InputError(
-            "range", "the two bodies lie nowhere within " + core::format_number(1000 * apart, 2) + " mm of each other",
-            {b.files.empty() ? "" : b.files.front(), {}, {}, {}});
-    }
-    scene.range = drawn_range(values, scene.colours);
-    std::string extremes;
-    if (const auto [lowest, highest] = std::minmax_element(on_base.begin(), on_base.end());
-        !on_base.empty() && (*lowest < scene.range->first || *highest > scene.range->second)) {
-        extremes = " The base has from " + core::format_number(*lowest, 4) + " to " + core::format_number(*highest, 4) +
-                   " " + unit + ": beyond the ends of the colours.";
-    }
+    take_colours(scene, found, options, unit, b.files.empty() ? "" : b.files.front());
+    const std::string extremes = extremes_of(on_base, *scene.range, unit);
     scene.value_name = "difference";
     scene.value_unit = unit;
     scene.camera = to.from_below();
@@ -230,16 +274,9 @@ ComposedView composed_difference(const Field& a, const Field& b, const std::stri
     scene.height = options.height;
     scene.text_size = options.text_size;
     const std::string seen = options.camera.empty() ? "seen from below, bow to the right" : to.camera_said();
-    composed.caption = "The second case less the first, " + seen + "; the first was moved by (" +
-                       core::format_number(1000 * shift[0], 3) + ", " + core::format_number(1000 * shift[1], 3) + ", " +
-                       core::format_number(1000 * shift[2], 3) +
-                       ") mm so that the bases lie on each other; the surfaces then lie at most " +
-                       core::format_number(1000 * furthest, 2) + " mm apart" +
-                       (furthest > apart ? "; grey where that is more than " + core::format_number(1000 * apart, 2) +
-                                               " mm: nothing is compared there."
-                                         : std::string(".")) +
-                       (vectors ? " The sizes of the vectors are compared, not their directions." : "") + level.said +
-                       (view_unit(array) == unit ? suspicion(all) : "") + extremes + to.mirror_said();
+    composed.caption =
+        caption_of(found, shift, seen, vectors,
+                   level.said + (view_unit(array) == unit ? suspicion(found.all) : "") + extremes + to.mirror_said());
     return composed;
 }
 

@@ -217,6 +217,46 @@ private:
     NumberRows result_;
 };
 
+/// Node numbers of one row from `p` on, behind which it then stands; how many there are.
+std::size_t index_row(const char*& p, const char* end, char separator, IndexRows& result, Index* connectivity) {
+    std::size_t count = 0;
+    while (true) {
+        Index value = 0;
+        const char* start = p;
+        while (p < end && p - start <= most_digits && static_cast<unsigned char>(*p - '0') < 10) {
+            value = value * 10 + (*p++ - '0');
+        }
+        if (p == start || p - start > most_digits) {
+            throw RowError{start,
+                           "'" + std::string(token_at(start, end, separator).substr(0, 40)) + "' is not a node number",
+                           "faces name their nodes by whole numbers from 0"};
+        }
+        connectivity[result.entries++] = value;
+        ++count;
+        result.smallest = std::min(result.smallest, value);
+        if (value > result.largest) {
+            result.largest = value;
+            result.largest_at = start;
+        }
+        const char* after = p;
+        p = skip_blanks(p, end, separator);
+        // Spreadsheets fill short rows with separators.
+        bool separated = false;
+        while (p < end && *p == separator) {
+            separated = true;
+            p = skip_blanks(p + 1, end, separator);
+        }
+        if (p == end || *p == '\n') {
+            break;
+        }
+        if (!separated) {
+            throw RowError{after,
+                           "'" + std::string(token_at(p, end, separator).substr(0, 40)) + "' behind a node number", ""};
+        }
+    }
+    return count;
+}
+
 /// One chunk of rows of indices.
 IndexRows index_chunk(std::string_view text, char separator, std::size_t least, Index* lengths, Index* connectivity,
                       std::size_t room) {
@@ -239,41 +279,7 @@ IndexRows index_chunk(std::string_view text, char separator, std::size_t least, 
             continue;
         }
         const char* row_start = p;
-        std::size_t count = 0;
-        while (true) {
-            Index value = 0;
-            const char* start = p;
-            while (p < end && p - start <= most_digits && static_cast<unsigned char>(*p - '0') < 10) {
-                value = value * 10 + (*p++ - '0');
-            }
-            if (p == start || p - start > most_digits) {
-                throw RowError{
-                    start, "'" + std::string(token_at(start, end, separator).substr(0, 40)) + "' is not a node number",
-                    "faces name their nodes by whole numbers from 0"};
-            }
-            connectivity[result.entries++] = value;
-            ++count;
-            result.smallest = std::min(result.smallest, value);
-            if (value > result.largest) {
-                result.largest = value;
-                result.largest_at = start;
-            }
-            const char* after = p;
-            p = skip_blanks(p, end, separator);
-            // Spreadsheets fill short rows with separators.
-            bool separated = false;
-            while (p < end && *p == separator) {
-                separated = true;
-                p = skip_blanks(p + 1, end, separator);
-            }
-            if (p == end || *p == '\n') {
-                break;
-            }
-            if (!separated) {
-                throw RowError{
-                    after, "'" + std::string(token_at(p, end, separator).substr(0, 40)) + "' behind a node number", ""};
-            }
-        }
+        const std::size_t count = index_row(p, end, separator, result, connectivity);
         if (count < least) {
             throw RowError{row_start,
                            "a row of " + std::to_string(count) + " node numbers where at least " +

@@ -114,6 +114,7 @@ private:
     void time(const std::string& key, const std::string& rest, std::string_view line);
     void files(const std::string& key, const std::string& rest);
     void choose_time();
+    void complete_names();
     [[nodiscard]] int whole(const std::string& text) const {
         const auto value = core::parse_integer(text);
         if (!value || *value < -1000000000 || *value > 1000000000) {
@@ -360,6 +361,29 @@ void CaseReader::choose_time() {
     result_.time = time_;
 }
 
+/// The section that a line begins; empty when it begins none.
+std::string section_of(std::string_view line) {
+    for (const char* name :
+         {"FORMAT", "GEOMETRY", "VARIABLE", "TIME", "FILE", "MATERIAL", "BLOCK_CONTINUATION", "SCRIPTS"}) {
+        if (core::lower_case(line) == core::lower_case(name)) {
+            return name;
+        }
+    }
+    return {};
+}
+
+/// Names of files with their numbers filled in, for the chosen time.
+void CaseReader::complete_names() {
+    result_.geometry = complete(geometry_);
+    if (coordinates_only_) {
+        result_.connectivity = complete(geometry_, *coordinates_only_);
+    }
+    for (auto& entry : pending_) {
+        entry.variable.file = complete(entry.pattern);
+        result_.variables.push_back(std::move(entry.variable));
+    }
+}
+
 EnsightCase CaseReader::read() {
     const core::MappedFile file(path_);
     if (file.bytes().size() > most_text) {
@@ -373,16 +397,8 @@ EnsightCase CaseReader::read() {
         if (line.empty() || line.front() == '#') {
             continue;
         }
-        bool begins = false;
-        for (const char* name :
-             {"FORMAT", "GEOMETRY", "VARIABLE", "TIME", "FILE", "MATERIAL", "BLOCK_CONTINUATION", "SCRIPTS"}) {
-            begins = begins || core::lower_case(line) == core::lower_case(name);
-            if (begins) {
-                section = name;
-                break;
-            }
-        }
-        if (begins) {
+        if (const std::string begun = section_of(line); !begun.empty()) {
+            section = begun;
             continue;
         }
         const std::size_t colon = line.find(':');
@@ -413,14 +429,7 @@ EnsightCase CaseReader::read() {
         throw core::InputError("format", "the case names no geometry in EnSight Gold format",
                                {path_.string(), {}, {}, {}});
     }
-    result_.geometry = complete(geometry_);
-    if (coordinates_only_) {
-        result_.connectivity = complete(geometry_, *coordinates_only_);
-    }
-    for (auto& entry : pending_) {
-        entry.variable.file = complete(entry.pattern);
-        result_.variables.push_back(std::move(entry.variable));
-    }
+    complete_names();
     return std::move(result_);
 }
 

@@ -249,8 +249,8 @@ void EnsightGeometry::block_cells(EnsightPart& part, const std::int64_t* size, c
     }
 }
 
-void EnsightGeometry::block(EnsightPart& part, const std::string& line) {
-    part.block = true;
+/// Nodes of a block along its three axes, of the range that is written.
+std::vector<std::int64_t> EnsightGeometry::block_size(const std::string& line) {
     std::vector<std::int64_t> numbers;
     in_.integers(numbers, 3);
     if (has_word(line, "range")) {
@@ -274,6 +274,13 @@ void EnsightGeometry::block(EnsightPart& part, const std::string& line) {
     if (size[0] * size[1] > 0x7fffffff / size[2]) {
         in_.fail("a block of more than 2^31 nodes");
     }
+    return numbers;
+}
+
+void EnsightGeometry::block(EnsightPart& part, const std::string& line) {
+    part.block = true;
+    const std::vector<std::int64_t> numbers = block_size(line);
+    const std::int64_t* size = numbers.data();
     const auto nodes = static_cast<std::size_t>(size[0] * size[1] * size[2]);
     block_coordinates(part, line, size);
     const auto cells = [&](std::size_t k) { return static_cast<std::size_t>(std::max<std::int64_t>(1, size[k] - 1)); };

@@ -54,6 +54,7 @@ private:
     void part(std::int64_t number);
     void coordinates(EnsightPart& part, std::uint64_t nodes);
     void block(EnsightPart& part, const std::string& line);
+    std::vector<std::int64_t> block_size(const std::string& line);
     void block_coordinates(EnsightPart& part, const std::string& line, const std::int64_t* size);
     void block_cells(EnsightPart& part, const std::int64_t* size, const std::vector<bool>& left_out);
     void elements(EnsightPart& part, const std::string& kind, unsigned char type, int corners, bool ghost);

@@ -65,6 +65,41 @@ void read_rows(const std::string& file, const std::vector<std::string_view>& lin
     }
 }
 
+/// Puts coordinates into the part's points; the other columns are values.
+std::vector<PartValues> take_columns(ElementPart& part, const std::vector<std::string_view>& names,
+                                     const Columns& columns, const std::string& file, std::set<std::string>& seen) {
+    const std::size_t count = columns[0].size();
+    part.points.grow_to(3 * count);
+    part.points.fill(0);
+    std::vector<PartValues> values;
+    bool located = false;
+    for (std::size_t c = 1; c < names.size(); ++c) {
+        const std::string name(names[c]);
+        if (!seen.insert(name).second) {
+            continue;  // coordinates come again where the user asked for them
+        }
+        const int axis = name == "x-coordinate" ? 0 : name == "y-coordinate" ? 1 : name == "z-coordinate" ? 2 : -1;
+        if (axis >= 0) {
+            located = true;
+            for (std::size_t i = 0; i < count; ++i) {
+                part.points[3 * i + static_cast<std::size_t>(axis)] = columns[c][i];
+            }
+            continue;
+        }
+        PartValues entry{name, true, 1, Buffer<double>(count)};
+        std::copy(columns[c].begin(), columns[c].end(), entry.values.begin());
+        values.push_back(std::move(entry));
+    }
+    if (!located) {
+        throw core::InputError("format", "the table has no coordinates", {file, 1, {}, {}});
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto node = static_cast<std::int64_t>(i);
+        part.add(VTK_VERTEX, &node, 1);
+    }
+    return values;
+}
+
 Field read(const std::filesystem::path& path, const ReadOptions& options, core::Progress& progress) {
     const core::MappedFile file(path);
     const auto lines = core::split(file.bytes(), '\n');
@@ -90,35 +125,8 @@ Field read(const std::filesystem::path& path, const ReadOptions& options, core::
     if (count == 0) {
         throw core::InputError("format", "the table has no rows", {file.name(), {}, {}, {}});
     }
-    part.points.grow_to(3 * count);
-    part.points.fill(0);
-    std::vector<PartValues> values;
     std::set<std::string> seen;
-    bool located = false;
-    for (std::size_t c = 1; c < names.size(); ++c) {
-        const std::string name(names[c]);
-        if (!seen.insert(name).second) {
-            continue;  // coordinates come again where the user asked for them
-        }
-        const int axis = name == "x-coordinate" ? 0 : name == "y-coordinate" ? 1 : name == "z-coordinate" ? 2 : -1;
-        if (axis >= 0) {
-            located = true;
-            for (std::size_t i = 0; i < count; ++i) {
-                part.points[3 * i + static_cast<std::size_t>(axis)] = columns[c][i];
-            }
-            continue;
-        }
-        PartValues entry{name, true, 1, Buffer<double>(count)};
-        std::copy(columns[c].begin(), columns[c].end(), entry.values.begin());
-        values.push_back(std::move(entry));
-    }
-    if (!located) {
-        throw core::InputError("format", "the table has no coordinates", {file.name(), 1, {}, {}});
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto node = static_cast<std::int64_t>(i);
-        part.add(VTK_VERTEX, &node, 1);
-    }
+    std::vector<PartValues> values = take_columns(part, names, columns, file.name(), seen);
     scale_parts(parts, options, field);
     field.zones.push_back(zone_from(std::move(part), std::move(values), seen.contains("z-coordinate") ? 3 : 2, options,
                                     file.name(), field.problems));

@@ -48,6 +48,8 @@ private:
     [[nodiscard]] std::vector<Element> elements_of(const std::vector<std::size_t>& blocks, bool wall,
                                                    std::size_t& too_small) const;
     [[nodiscard]] double face_area(const Element& element) const;
+    [[nodiscard]] std::vector<Element> usable_elements(Zone& zone, int id, const std::vector<std::size_t>& blocks,
+                                                       core::Problems& problems) const;
     void add_surface(Field& field, int id, const std::vector<std::size_t>& blocks);
     void take_pressure_of_cells(Zone& zone, const std::vector<Element>& elements, core::Problems& problems) const;
     [[nodiscard]] std::uint64_t hidden_within(const CellBlock& block) const;
@@ -211,6 +213,24 @@ vtkSmartPointer<vtkUnstructuredGrid> grid_of(CellArrays&& cells, Buffer<double>&
     return grid;
 }
 
+namespace {
+
+/// Cells of a type that there is not: the mesh may be damaged.
+void note_strange_cells(const CellBlock& block, const std::string& zone, const core::Place& place,
+                        core::Problems& problems) {
+    constexpr int last_known = 7;  // polyhedra
+    const int strange =
+        block.elements.empty() ? block.element : *std::max_element(block.elements.begin(), block.elements.end());
+    if (strange > last_known) {
+        problems.push_back({core::Problem::Severity::warning,
+                            "cells of zone '" + zone + "' are said to be of type " + std::to_string(strange) +
+                                ", and there are 0 to 7: is the mesh damaged? They are put together from their faces",
+                            place});
+    }
+}
+
+}  // namespace
+
 void Assembly::add_volumes(Field& field) {
     std::vector<const CellBlock*> wanted;
     for (const auto& block : mesh_.cell_blocks) {
@@ -227,17 +247,7 @@ void Assembly::add_volumes(Field& field) {
     const CellBuilder builder(mesh_);
     const core::Place place{mesh_.file, {}, {}, {}};
     for (const CellBlock* block : wanted) {
-        constexpr int last_known = 7;  // polyhedra
-        const int strange = block->elements.empty() ? block->element
-                                                    : *std::max_element(block->elements.begin(), block->elements.end());
-        if (strange > last_known) {
-            field.problems.push_back(
-                {core::Problem::Severity::warning,
-                 "cells of zone '" + named_zone(block->zone, 0, true).name + "' are said to be of type " +
-                     std::to_string(strange) +
-                     ", and there are 0 to 7: is the mesh damaged? They are put together from their faces",
-                 place});
-        }
+        note_strange_cells(*block, named_zone(block->zone, 0, true).name, place, field.problems);
         const bool last = block == wanted.back();
         Zone zone = named_zone(block->zone, 0, true);
         progress_.report(0.7, "building " + zone.name);
@@ -267,38 +277,48 @@ void Assembly::add_volumes(Field& field) {
     }
 }
 
+/// The faces of a boundary zone that can be drawn; notes what is left out. A wall of solids alone is made a solid's.
+std::vector<Assembly::Element> Assembly::usable_elements(Zone& zone, int id, const std::vector<std::size_t>& blocks,
+                                                         core::Problems& problems) const {
+    std::size_t too_small = 0;
+    auto elements = elements_of(blocks, zone.kind == ZoneKind::wall, too_small);
+    if (too_small > 0 && zone.kind == ZoneKind::interface && elements.empty()) {
+        problems.push_back({core::Problem::Severity::warning,
+                            "the faces of interface '" + zone.name +
+                                "' have no corners in the file, only the cells beside them: it is left out",
+                            {mesh_.file, {}, {}, {}}});
+        return {};
+    }
+    if (too_small > 0) {
+        problems.push_back({core::Problem::Severity::error,
+                            core::counted(too_small, "face") + " of zone '" + zone.name +
+                                (too_small == 1 ? "' has fewer corners than a face can have, and is left out"
+                                                : "' have fewer corners than a face can have, and are left out") +
+                                ": is the mesh damaged?",
+                            {mesh_.file, {}, {}, {}}});
+    }
+    if (elements.empty()) {
+        problems.push_back(
+            {core::Problem::Severity::note, "zone " + zone.name + " has no faces", {mesh_.file, {}, {}, {}}});
+        return {};
+    }
+    if (zone.kind == ZoneKind::wall && mesh_.bounds_solids(id)) {
+        zone.kind = ZoneKind::solid;
+        problems.push_back({core::Problem::Severity::note,
+                            "wall '" + zone.name + "' bounds solids alone: no fluid acts on it",
+                            {mesh_.file, {}, {}, {}}});
+    }
+    return elements;
+}
+
 void Assembly::add_surface(Field& field, int id, const std::vector<std::size_t>& blocks) {
     Zone zone = named_zone(id, mesh_.face_blocks[blocks.front()].kind, false);
     if (!matches_any(options_.zones, zone.name)) {
         return;
     }
-    std::size_t too_small = 0;
-    const auto elements = elements_of(blocks, zone.kind == ZoneKind::wall, too_small);
-    if (too_small > 0 && zone.kind == ZoneKind::interface && elements.empty()) {
-        field.problems.push_back({core::Problem::Severity::warning,
-                                  "the faces of interface '" + zone.name +
-                                      "' have no corners in the file, only the cells beside them: it is left out",
-                                  {mesh_.file, {}, {}, {}}});
-        return;
-    }
-    if (too_small > 0) {
-        field.problems.push_back({core::Problem::Severity::error,
-                                  core::counted(too_small, "face") + " of zone '" + zone.name +
-                                      (too_small == 1 ? "' has fewer corners than a face can have, and is left out"
-                                                      : "' have fewer corners than a face can have, and are left out") +
-                                      ": is the mesh damaged?",
-                                  {mesh_.file, {}, {}, {}}});
-    }
+    const std::vector<Element> elements = usable_elements(zone, id, blocks, field.problems);
     if (elements.empty()) {
-        field.problems.push_back(
-            {core::Problem::Severity::note, "zone " + zone.name + " has no faces", {mesh_.file, {}, {}, {}}});
         return;
-    }
-    if (zone.kind == ZoneKind::wall && mesh_.bounds_solids(id)) {
-        zone.kind = ZoneKind::solid;
-        field.problems.push_back({core::Problem::Severity::note,
-                                  "wall '" + zone.name + "' bounds solids alone: no fluid acts on it",
-                                  {mesh_.file, {}, {}, {}}});
     }
     std::size_t corners = 0;
     for (const auto& element : elements) {

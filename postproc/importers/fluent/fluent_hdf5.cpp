@@ -30,7 +30,13 @@ bool recognises(std::string_view head, const fs::path& path) {
     }
 }
 
-Field read(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
+/// The files of a case and of its data, whichever of them was named.
+struct CaseAndData {
+    fs::path mesh, data;
+    bool asked_for = false;  ///< the data: not only found beside the case
+};
+
+CaseAndData files_for(const fs::path& path, const ReadOptions& options) {
     const bool has_mesh = Hdf5File(path).has("/meshes/1");
     fs::path mesh_path = path;
     fs::path data_path = options.companion;
@@ -53,6 +59,11 @@ Field read(const fs::path& path, const ReadOptions& options, core::Progress& pro
                                    "name the case (.cas.h5) they belong to: option 'mesh FILE'");
         }
     }
+    return {mesh_path, data_path, asked_for};
+}
+
+Field read(const fs::path& path, const ReadOptions& options, core::Progress& progress) {
+    const auto [mesh_path, data_path, asked_for] = files_for(path, options);
     if (!data_path.empty()) {
         // The data are tried in a process of its own: now, while there is little memory that it would have to share.
         try {

@@ -64,6 +64,8 @@ private:
     };
     [[nodiscard]] std::uint64_t count(const std::string& name) const;
     [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
+    void take_codes(const Part& part, int kind, const Buffer<std::uint32_t>& codes);
+    void check_faces_there(const std::vector<Part>& cuts) const;
     [[nodiscard]] std::vector<std::string> zone_names(const std::string& path, std::size_t zones) const;
     void read_nodes();
     [[nodiscard]] std::vector<std::uint32_t> places_of_used_nodes();
@@ -258,6 +260,31 @@ std::vector<std::uint32_t> Reader::places_of_used_nodes() {
     return places;
 }
 
+/// Codes of mixed zones: they tell polyhedra that look like hexahedra. `codes` is empty where all cells are of one
+/// kind.
+void Reader::take_codes(const Part& part, int kind, const Buffer<std::uint32_t>& codes) {
+    const bool mixed = !codes.empty();
+    for (auto& block : mesh_.cell_blocks) {
+        const std::uint64_t from = std::max(block.first, part.first);
+        const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
+        if (from >= to) {
+            continue;
+        }
+        if (!mixed) {
+            block.element = block.element == 0 ? static_cast<int>(kind & 255) : block.element;
+            continue;
+        }
+        if (block.elements.empty()) {
+            block.elements.grow_to(block.count);
+            block.elements.fill(0);
+        }
+        for (std::uint64_t id = from; id < to; ++id) {
+            block.elements[id - block.first] =
+                static_cast<unsigned char>(std::min<std::uint32_t>(codes[id - part.first], 255));
+        }
+    }
+}
+
 void Reader::read_cells() {
     const std::string topology = root_ + "/cells/zoneTopology/";
     if (mesh_.cells == 0 && !file_.has(topology + "id")) {
@@ -302,24 +329,21 @@ void Reader::read_cells() {
         if (mixed && codes.size() != part.count) {
             refuse(part.path, "its size does not fit its ids");
         }
-        for (auto& block : mesh_.cell_blocks) {
+        take_codes(part, kind, codes);
+    }
+}
+
+/// The faces of each zone must all be in some part of the lists.
+void Reader::check_faces_there(const std::vector<Part>& cuts) const {
+    for (const auto& block : mesh_.face_blocks) {
+        std::uint64_t there = 0;
+        for (const auto& part : cuts) {
             const std::uint64_t from = std::max(block.first, part.first);
             const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
-            if (from >= to) {
-                continue;
-            }
-            if (!mixed) {
-                block.element = block.element == 0 ? static_cast<int>(kind & 255) : block.element;
-                continue;
-            }
-            if (block.elements.empty()) {
-                block.elements.grow_to(block.count);
-                block.elements.fill(0);
-            }
-            for (std::uint64_t id = from; id < to; ++id) {
-                block.elements[id - block.first] =
-                    static_cast<unsigned char>(std::min<std::uint32_t>(codes[id - part.first], 255));
-            }
+            there += from < to ? to - from : 0;
+        }
+        if (there < block.count) {
+            refuse(root_ + "/faces/nodes", "the faces of zone " + std::to_string(block.zone) + " are missing");
         }
     }
 }
@@ -354,17 +378,7 @@ void Reader::read_faces() {
               [](const FaceBlock& a, const FaceBlock& b) { return a.first < b.first; });
     progress_.report(0.2, "reading faces");
     const auto cuts = parts(root_ + "/faces/nodes");
-    for (const auto& block : mesh_.face_blocks) {
-        std::uint64_t there = 0;
-        for (const auto& part : cuts) {
-            const std::uint64_t from = std::max(block.first, part.first);
-            const std::uint64_t to = std::min(block.first + block.count, part.first + part.count);
-            there += from < to ? to - from : 0;
-        }
-        if (there < block.count) {
-            refuse(root_ + "/faces/nodes", "the faces of zone " + std::to_string(block.zone) + " are missing");
-        }
-    }
+    check_faces_there(cuts);
     for (const auto& part : cuts) {
         (void)file_.backed_shape(part.path + "/nnodes");
     }

@@ -126,6 +126,7 @@ private:
     void mind_missing_pressure();
     void grid_size();
     void solution(std::uint64_t index, std::size_t size);
+    ValueBlock announced_block(const std::vector<std::uint64_t>& header, const Announced& said, std::size_t size);
     void values(ValueBlock& block, std::size_t size);
     void unknown(std::uint64_t index, bool binary);
     void check_zone(const ValueBlock& block, const Announced& said, const ZoneRanges& zone, std::uint64_t last) const;
@@ -250,13 +251,9 @@ void DataReader::check_zone(const ValueBlock& block, const Announced& said, cons
     }
 }
 
-void DataReader::solution(std::uint64_t index, std::size_t size) {
-    const auto header = text_.header(10, 7);
-    // A comment speaks of the section behind it alone, and of its own zone.
-    Announced said = announced(std::exchange(comment_, {}));
-    if (said.zone != 0 && static_cast<std::uint64_t>(said.zone) != header[1]) {
-        said = {};
-    }
+/// What the header of a section says of its values.
+ValueBlock DataReader::announced_block(const std::vector<std::uint64_t>& header, const Announced& said,
+                                       std::size_t size) {
     ValueBlock block;
     const auto small = [](std::uint64_t v) {
         return static_cast<int>(std::min<std::uint64_t>(v, std::numeric_limits<int>::max()));
@@ -279,6 +276,19 @@ void DataReader::solution(std::uint64_t index, std::size_t size) {
         text_.fail("the header announces " + std::to_string(block.count) + " x " + std::to_string(components) +
                    " values, but only " + std::to_string(left) + " bytes are left");
     }
+    return block;
+}
+
+void DataReader::solution(std::uint64_t index, std::size_t size) {
+    const auto header = text_.header(10, 7);
+    // A comment speaks of the section behind it alone, and of its own zone.
+    Announced said = announced(std::exchange(comment_, {}));
+    if (said.zone != 0 && static_cast<std::uint64_t>(said.zone) != header[1]) {
+        said = {};
+    }
+    ValueBlock block = announced_block(header, said, size);
+    const std::uint64_t last = header[6];
+    const std::uint64_t components = header[2];
     const auto zone = zones_.find(block.zone);
     const bool known = zone != zones_.end();
     if (block.count > 0 && known) {

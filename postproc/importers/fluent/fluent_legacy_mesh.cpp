@@ -41,6 +41,8 @@ private:
     void cells(std::uint64_t index, Coding coding);
     void elements(CellBlock& block, std::uint64_t index, Coding coding);
     void faces(std::uint64_t index, Coding coding);
+    void skip_faces(const FaceBlock& block, std::uint64_t numbers, std::uint64_t index, Coding coding);
+    FaceBlock announced_faces(const std::vector<std::uint64_t>& header);
     void fixed_faces(FaceBlock& block, Coding coding);
     void mixed_faces(FaceBlock& block, Coding coding);
     template <typename Next>
@@ -276,12 +278,9 @@ void MeshReader::elements(CellBlock& block, std::uint64_t index, Coding coding) 
     close(index, coding);
 }
 
-void MeshReader::faces(std::uint64_t index, Coding coding) {
-    auto& mesh = result_.mesh;
-    const auto header = text_.header(16, 3);
-    if (is_declaration(header, mesh.faces, faces_declared_)) {
-        return;
-    }
+/// Zone, kind and numbers of the faces that a section announces.
+FaceBlock MeshReader::announced_faces(const std::vector<std::uint64_t>& header) {
+    const auto& mesh = result_.mesh;
     if (header.size() < 5) {
         text_.fail("a header with too few numbers");
     }
@@ -300,7 +299,29 @@ void MeshReader::faces(std::uint64_t index, Coding coding) {
     }
     block.count = last + 1 - block.first;
     block.per_face = shape == 5 ? 0 : static_cast<std::uint32_t>(shape);
-    mesh.faces = std::max(mesh.faces, last);
+    return block;
+}
+
+void MeshReader::skip_faces(const FaceBlock& block, std::uint64_t numbers, std::uint64_t index, Coding coding) {
+    if (coding == Coding::ascii) {
+        text_.skip_plain_body();
+    } else if (block.per_face != 0) {
+        in_.skip(block.count * numbers * 4);
+        text_.close_binary_body(index);
+    } else {
+        skip_mixed_binary(block.count);
+        text_.close_binary_body(index);
+    }
+}
+
+void MeshReader::faces(std::uint64_t index, Coding coding) {
+    auto& mesh = result_.mesh;
+    const auto header = text_.header(16, 3);
+    if (is_declaration(header, mesh.faces, faces_declared_)) {
+        return;
+    }
+    FaceBlock block = announced_faces(header);
+    mesh.faces = std::max(mesh.faces, header[2]);
     if (!text_.accept('(')) {
         if (block.count > 0) {
             text_.fail("faces without a body");
@@ -313,15 +334,7 @@ void MeshReader::faces(std::uint64_t index, Coding coding) {
                coding == Coding::ascii ? 2 : 4);
     faces_read_ += block.count;
     if (surfaces_only_ && is_inner_code(block.kind)) {
-        if (coding == Coding::ascii) {
-            text_.skip_plain_body();
-        } else if (block.per_face != 0) {
-            in_.skip(block.count * numbers * 4);
-            text_.close_binary_body(index);
-        } else {
-            skip_mixed_binary(block.count);
-            text_.close_binary_body(index);
-        }
+        skip_faces(block, numbers, index, coding);
         return;
     }
     block.c0.grow_to(block.count);

@@ -305,6 +305,30 @@ std::int64_t turn_inverted_cells(ElementPart& part) {
     return turned;
 }
 
+/// The surface, lines or points of a zone.
+void add_surface(Zone& zone, ElementPart& part, const Chosen& chosen, int dimension, int volume_dimension) {
+    zone.surface = vtkSmartPointer<vtkPolyData>::New();
+    const auto cells = cells_of(part, chosen.places, true);
+    zone.surface->SetPoints(points_from(std::move(part.points)));
+    if (dimension == 2) {
+        zone.surface->SetPolys(cells);
+    } else if (dimension == 1) {
+        zone.surface->SetLines(cells);
+        zone.kind = zone.kind == ZoneKind::unknown && volume_dimension == 3 ? ZoneKind::line : zone.kind;
+    } else {
+        zone.surface->SetVerts(cells);
+        zone.kind = ZoneKind::points;
+    }
+}
+
+Buffer<double> kept_values(const Buffer<double>& values, const std::vector<std::size_t>& places, std::size_t n) {
+    Buffer<double> kept(places.size() * n);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        std::copy_n(values.data() + places[i] * n, n, kept.data() + i * n);
+    }
+    return kept;
+}
+
 Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_dimension, const ReadOptions& options,
                const std::string& file, core::Problems& problems) {
     Zone zone;
@@ -336,18 +360,7 @@ Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_
         cell_data = zone.volume->GetCellData();
         point_data = zone.volume->GetPointData();
     } else {
-        zone.surface = vtkSmartPointer<vtkPolyData>::New();
-        const auto cells = cells_of(part, chosen.places, true);
-        zone.surface->SetPoints(points_from(std::move(part.points)));
-        if (dimension == 2) {
-            zone.surface->SetPolys(cells);
-        } else if (dimension == 1) {
-            zone.surface->SetLines(cells);
-            zone.kind = zone.kind == ZoneKind::unknown && volume_dimension == 3 ? ZoneKind::line : zone.kind;
-        } else {
-            zone.surface->SetVerts(cells);
-            zone.kind = ZoneKind::points;
-        }
+        add_surface(zone, part, chosen, dimension, volume_dimension);
         cell_data = zone.surface->GetCellData();
         point_data = zone.surface->GetPointData();
     }
@@ -355,11 +368,7 @@ Zone zone_from(ElementPart&& part, std::vector<PartValues>&& values, int volume_
                                  Naming(file, options, problems))) {
         const auto n = static_cast<std::size_t>(named.info.components);
         if (!named.on_nodes && chosen.left_out > 0) {
-            Buffer<double> kept(chosen.places.size() * n);
-            for (std::size_t i = 0; i < chosen.places.size(); ++i) {
-                std::copy_n(named.values.data() + chosen.places[i] * n, n, kept.data() + i * n);
-            }
-            named.values = std::move(kept);
+            named.values = kept_values(named.values, chosen.places, n);
         }
         auto array = given_to_vtk<vtkDoubleArray>(std::move(named.values), named.info.components);
         array->SetName(named.info.name.c_str());

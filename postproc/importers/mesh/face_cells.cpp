@@ -231,6 +231,60 @@ void CellBuilder::check_corners(std::uint64_t corners) const {
     }
 }
 
+namespace {
+
+/// What a block of cells gives: its part of the arrays, until it is known where they begin.
+struct CellPart {
+    std::uint64_t cells = 0, connectivity = 0, stream = 0;
+    std::vector<std::int32_t> nodes;
+    std::vector<std::int64_t> faces;
+};
+
+/// Where each block's part begins in the arrays; the last entry is behind all.
+std::vector<CellPart> starts_of(const std::vector<CellPart>& parts) {
+    std::vector<CellPart> starts(parts.size() + 1);
+    for (std::size_t b = 0; b < parts.size(); ++b) {
+        starts[b + 1].cells = starts[b].cells + parts[b].cells;
+        starts[b + 1].connectivity = starts[b].connectivity + parts[b].connectivity;
+        starts[b + 1].stream = starts[b].stream + parts[b].stream;
+    }
+    return starts;
+}
+
+/// Puts the part of the cells from `begin` to `end` where it belongs. `first` is the id of cell 0.
+void put_part(CellArrays& out, const CellPart& part, const CellPart& start, std::size_t begin, std::size_t end,
+              const Buffer<unsigned char>& types, const Buffer<std::uint32_t>& lengths, Buffer<std::uint64_t>& listed,
+              std::uint64_t first) {
+    std::copy(part.nodes.begin(), part.nodes.end(), out.connectivity.data() + start.connectivity);
+    std::copy(part.faces.begin(), part.faces.end(), out.face_stream.data() + start.stream);
+    std::size_t cell = start.cells;
+    std::uint64_t connectivity = start.connectivity;
+    std::uint64_t stream = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        if (types[i] == vtk_empty) {
+            continue;
+        }
+        out.types[cell] = types[i];
+        if (!listed.empty()) {
+            listed[cell] = first + i;
+        }
+        out.offsets[cell] = static_cast<std::int32_t>(connectivity);
+        connectivity += lengths[i];
+        if (!out.face_locations.empty()) {
+            out.face_locations[cell] =
+                types[i] == vtk_polyhedron ? static_cast<std::int64_t>(start.stream + stream) : -1;
+        }
+        if (types[i] == vtk_polyhedron) {
+            for (std::int64_t faces = part.faces[stream++]; faces > 0; --faces) {
+                stream += static_cast<std::uint64_t>(part.faces[stream]) + 1;
+            }
+        }
+        ++cell;
+    }
+}
+
+}  // namespace
+
 /// Cells of any kind are built by blocks, and then put one block after another.
 CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progress) const {
     const auto polyhedron = [&](std::size_t i) {
@@ -240,25 +294,20 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
     Buffer<unsigned char> types(count);
     Buffer<std::uint32_t> lengths(count);
     const std::size_t blocks = (count + block_of_cells - 1) / block_of_cells;
-    struct Part {
-        std::uint64_t cells = 0, connectivity = 0, stream = 0;
-        Tally tally;
-        std::vector<std::int32_t> nodes;  ///< of the block's cells, until they find their place
-        std::vector<std::int64_t> faces;
-    };
-    std::vector<Part> parts(blocks);
+    std::vector<CellPart> parts(blocks);
+    std::vector<Tally> tallies(blocks);
     core::parallel_blocks(
         count, block_of_cells,
         [&](std::size_t begin, std::size_t end) {
             CellShape cell;
-            Part part;
+            CellPart part;
             part.nodes.reserve(8 * (end - begin));
             for (std::size_t i = begin; i < end; ++i) {
                 gather(cells.first + i, cell);
                 recognise(cell, mesh_.dimension, polyhedron(i));
                 types[i] = cell.type;
                 lengths[i] = static_cast<std::uint32_t>(cell.nodes.size());
-                part.tally.add(cell, mesh_);
+                tallies[begin / block_of_cells].add(cell, mesh_);
                 if (cell.type == vtk_empty) {
                     continue;
                 }
@@ -276,17 +325,11 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
         },
         progress);
     CellArrays out;
-    std::vector<Part> starts(blocks);
-    Part total;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        starts[b].cells = total.cells;
-        starts[b].connectivity = total.connectivity;
-        starts[b].stream = total.stream;
-        total.cells += parts[b].cells;
-        total.connectivity += parts[b].connectivity;
-        total.stream += parts[b].stream;
-        parts[b].tally.into(out);
+    for (const Tally& tally : tallies) {
+        tally.into(out);
     }
+    const std::vector<CellPart> starts = starts_of(parts);
+    const CellPart& total = starts.back();
     check_corners(total.connectivity);
     out.types.grow_to(total.cells);
     Buffer<std::uint64_t> listed;
@@ -299,35 +342,9 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
     core::parallel_blocks(
         count, block_of_cells,
         [&](std::size_t begin, std::size_t end) {
-            const Part& start = starts[begin / block_of_cells];
-            Part& part = parts[begin / block_of_cells];
-            std::copy(part.nodes.begin(), part.nodes.end(), out.connectivity.data() + start.connectivity);
-            std::copy(part.faces.begin(), part.faces.end(), out.face_stream.data() + start.stream);
-            std::size_t cell = start.cells;
-            std::uint64_t connectivity = start.connectivity;
-            std::uint64_t stream = 0;
-            for (std::size_t i = begin; i < end; ++i) {
-                if (types[i] == vtk_empty) {
-                    continue;
-                }
-                out.types[cell] = types[i];
-                if (!listed.empty()) {
-                    listed[cell] = cells.first + i;
-                }
-                out.offsets[cell] = static_cast<std::int32_t>(connectivity);
-                connectivity += lengths[i];
-                if (!out.face_locations.empty()) {
-                    out.face_locations[cell] =
-                        types[i] == vtk_polyhedron ? static_cast<std::int64_t>(start.stream + stream) : -1;
-                }
-                if (types[i] == vtk_polyhedron) {
-                    for (std::int64_t faces = part.faces[stream++]; faces > 0; --faces) {
-                        stream += static_cast<std::uint64_t>(part.faces[stream]) + 1;
-                    }
-                }
-                ++cell;
-            }
-            part = Part{};
+            const std::size_t block = begin / block_of_cells;
+            put_part(out, parts[block], starts[block], begin, end, types, lengths, listed, cells.first);
+            parts[block] = CellPart{};
         },
         progress);
     out.ids = listed.empty() ? Ids(cells.first, total.cells) : Ids(std::move(listed));

@@ -327,6 +327,26 @@ std::vector<double> read_dimensions(FoamInput& in) {
 
 }  // namespace
 
+/// The values of a field on the patches of a piece of the mesh.
+void FoamFields::add_patches(const FoamPiece& piece, const ValueBlock& block, const BoundaryValues& boundary,
+                             const Buffer<double>& inner, double sign, const fs::path& file) {
+    for (std::size_t p = 0; p < piece.patches.size(); ++p) {
+        const FoamPatch& patch = piece.patches[p];
+        const int key = key_for_patch(boundary.keys, patch.name, patch.groups);
+        const PatchValues* given = key >= 0 ? &boundary.values[static_cast<std::size_t>(key)] : nullptr;
+        const std::size_t before = values_.size();
+        add_patch(piece, p, block, given, inner, file);
+        if (values_.size() > before && (given != nullptr || !boundary.elsewhere)) {
+            tell_guess(patch, given, block.variable, file);
+        }
+        for (std::size_t v = before; v < values_.size() && sign < 0; ++v) {
+            for (double& x : values_[v].values) {
+                x = -x;
+            }
+        }
+    }
+}
+
 void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     FoamInput in(file);
     const std::string& type = in.class_name();
@@ -374,21 +394,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     }
     // The function object's wall shear stress acts on the fluid; ours on the body.
     const double sign = block.canonical.ends_with("wall_shear") ? -1 : 1;
-    for (std::size_t p = 0; p < piece.patches.size(); ++p) {
-        const FoamPatch& patch = piece.patches[p];
-        const int key = key_for_patch(boundary.keys, patch.name, patch.groups);
-        const PatchValues* given = key >= 0 ? &boundary.values[static_cast<std::size_t>(key)] : nullptr;
-        const std::size_t before = values_.size();
-        add_patch(piece, p, block, given, inner, file);
-        if (values_.size() > before && (given != nullptr || !boundary.elsewhere)) {
-            tell_guess(patch, given, block.variable, file);
-        }
-        for (std::size_t v = before; v < values_.size() && sign < 0; ++v) {
-            for (double& x : values_[v].values) {
-                x = -x;
-            }
-        }
-    }
+    add_patches(piece, block, boundary, inner, sign, file);
     kinematic_ = kinematic_ || block.canonical == "kinematic_pressure";
     if (!options_.surfaces_only && sign > 0) {
         block.values = std::move(inner);

@@ -71,6 +71,8 @@ private:
     };
 
     void read_field(const FoamPiece& piece, const std::filesystem::path& file);
+    void add_patches(const FoamPiece& piece, const ValueBlock& block, const BoundaryValues& boundary,
+                     const Buffer<double>& inner, double sign, const std::filesystem::path& file);
     void add_patch(const FoamPiece& piece, std::size_t patch, const ValueBlock& like, const PatchValues* given,
                    const Buffer<double>& inner, const std::filesystem::path& file);
     [[nodiscard]] bool is_wanted(const ValueBlock& block) const;

@@ -130,6 +130,31 @@ bool has_openfoam_table(std::string_view text) {
     return false;
 }
 
+namespace {
+
+/// The numbers of a row, of the columns that have numbers.
+std::vector<double> numbers_in_row(const std::string& file, std::int64_t number, const std::vector<std::string>& words,
+                                   const std::vector<std::string>& heads, const std::vector<bool>& numeric) {
+    if (words.size() != heads.size() || words.size() != numeric.size() || !numeric.front()) {
+        fail_in_line(file, number,
+                     "a row of " + std::to_string(words.size()) + " entries where there are " +
+                         std::to_string(heads.size()) + " columns");
+    }
+    std::vector<double> row;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto value = numeric[i] ? number_of(words[i]) : std::nullopt;
+        if (numeric[i] && !value) {
+            fail_in_line(file, number, "expected a number, found '" + words[i].substr(0, 40) + "'");
+        }
+        if (value) {
+            row.push_back(*value);
+        }
+    }
+    return row;
+}
+
+}  // namespace
+
 Monitor read_openfoam_table(const std::string& file, std::string_view text) {
     Monitor monitor;
     monitor.file = file;
@@ -153,21 +178,7 @@ Monitor read_openfoam_table(const std::string& file, std::string_view text) {
         if (numeric.empty()) {
             numeric = columns_of(words, heads);
         }
-        if (words.size() != heads.size() || words.size() != numeric.size() || !numeric.front()) {
-            fail_in_line(file, number,
-                         "a row of " + std::to_string(words.size()) + " entries where there are " +
-                             std::to_string(heads.size()) + " columns");
-        }
-        std::vector<double> row;
-        for (std::size_t i = 0; i < words.size(); ++i) {
-            const auto value = numeric[i] ? number_of(words[i]) : std::nullopt;
-            if (numeric[i] && !value) {
-                fail_in_line(file, number, "expected a number, found '" + words[i].substr(0, 40) + "'");
-            }
-            if (value) {
-                row.push_back(*value);
-            }
-        }
+        std::vector<double> row = numbers_in_row(file, number, words, heads, numeric);
         rows.add(std::move(row));
     });
     if (rows.empty()) {

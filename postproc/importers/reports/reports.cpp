@@ -141,6 +141,43 @@ bool is_quoted_title(std::string_view line, const std::vector<std::string>& word
     return words.size() == 1 && line.front() == '"';
 }
 
+/// Names of the columns of a table, from the lines before its first row.
+void name_columns(Monitor& monitor, const std::vector<std::vector<std::string>>& heads, std::size_t columns,
+                  std::int64_t number) {
+    const std::string& file = monitor.file;
+    for (const auto& head : heads) {
+        if (head.size() == columns) {
+            monitor.columns = head;
+        } else if (head.size() == 1 && monitor.title.empty()) {
+            monitor.title = head[0];
+        }
+    }
+    if (monitor.columns.empty() && columns == 2) {
+        monitor.columns = {unnamed_steps, heads.empty() || heads.back().empty() ? "value" : heads.back().back()};
+    }
+    if (monitor.columns.empty()) {
+        fail_in_line(file, number, "a row of " + std::to_string(columns) + " numbers without their names");
+    }
+}
+
+void finish(Monitor& monitor, MonitorRows& rows, std::string_view bytes, std::int64_t number) {
+    const std::string& file = monitor.file;
+    if (rows.empty()) {
+        throw core::InputError("format", "there is no table of numbers in this file", {file, {}, {}, {}});
+    }
+    if (bytes.back() != '\n') {
+        monitor.problems.push_back({core::Problem::Severity::warning,
+                                    "the file does not end with a line end: its last row may be cut short",
+                                    {file, number, {}, {}}});
+    }
+    rows.into(monitor);
+    const auto& steps = monitor.values.front();
+    if (monitor.columns.front() == unnamed_steps &&
+        std::any_of(steps.begin(), steps.end(), [](double step) { return step != std::floor(step); })) {
+        monitor.columns.front() = "Time";  // no run counts in fractions
+    }
+}
+
 /// `begun`: a row was found whose columns have names.
 Monitor read_table(const std::string& file, std::string_view bytes, bool* begun = nullptr) {
     Monitor monitor;
@@ -173,20 +210,7 @@ Monitor read_table(const std::string& file, std::string_view bytes, bool* begun 
             fail_in_line(file, number, "expected numbers, found '" + std::string(line.substr(0, 40)) + "'");
         }
         if (rows.empty()) {
-            for (const auto& head : heads) {
-                if (head.size() == row->size()) {
-                    monitor.columns = head;
-                } else if (head.size() == 1 && monitor.title.empty()) {
-                    monitor.title = head[0];
-                }
-            }
-            if (monitor.columns.empty() && row->size() == 2) {
-                monitor.columns = {unnamed_steps,
-                                   heads.empty() || heads.back().empty() ? "value" : heads.back().back()};
-            }
-            if (monitor.columns.empty()) {
-                fail_in_line(file, number, "a row of " + std::to_string(row->size()) + " numbers without their names");
-            }
+            name_columns(monitor, heads, row->size(), number);
         }
         if (row->size() != monitor.columns.size()) {
             fail_in_line(file, number,
@@ -201,20 +225,7 @@ Monitor read_table(const std::string& file, std::string_view bytes, bool* begun 
             *begun = monitor.columns.size() > 1 && !heads.empty();
         }
     }
-    if (rows.empty()) {
-        throw core::InputError("format", "there is no table of numbers in this file", {file, {}, {}, {}});
-    }
-    if (bytes.back() != '\n') {
-        monitor.problems.push_back({core::Problem::Severity::warning,
-                                    "the file does not end with a line end: its last row may be cut short",
-                                    {file, number, {}, {}}});
-    }
-    rows.into(monitor);
-    const auto& steps = monitor.values.front();
-    if (monitor.columns.front() == unnamed_steps &&
-        std::any_of(steps.begin(), steps.end(), [](double step) { return step != std::floor(step); })) {
-        monitor.columns.front() = "Time";  // no run counts in fractions
-    }
+    finish(monitor, rows, bytes, number);
     return monitor;
 }
 
