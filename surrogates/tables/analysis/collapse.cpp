@@ -203,6 +203,61 @@ void add_curve(Collapse& result, const ForceTable& curve) {
     }
 }
 
+/// Points of the other levels against the reference, summed over the groups.
+struct Against {
+    double exponent = 0;
+    std::size_t points = 0, beyond = 0, far_beyond = 0;
+    std::vector<double> x, y, level, deviation;
+};
+
+void count_deviation(double gap, double deviation, CollapseGroup& group, Against& sum) {
+    sum.beyond += std::abs(deviation) > 2 ? 1 : 0;
+    sum.far_beyond += std::abs(deviation) > 4 ? 1 : 0;
+    if (std::abs(deviation) >= std::abs(group.worst)) {
+        group.worst = deviation;
+        group.worst_gap = gap;
+    }
+}
+
+/// What the points of one level say; one without points of its own in the range of the reference says nothing.
+CollapseGroup compared(double level, const std::vector<Point>& members, const Reference& reference,
+                       double reference_level, double least_error, Against& sum) {
+    CollapseGroup group;
+    group.level = level;
+    double ratio = 0, exponent = 0, square = 0;
+    std::vector<std::pair<double, double>> deviations;
+    for (const auto& p : members) {
+        const auto expected = reference.at(p.x);
+        const double joint =
+            !expected ? 1 : std::max({std::hypot(expected->second, p.sigma), least_error, core::least_divisor});
+        const double deviation = expected ? (p.y - expected->first) / joint : std::nan("");
+        sum.x.push_back(p.x);
+        sum.y.push_back(p.y);
+        sum.level.push_back(level);
+        sum.deviation.push_back(deviation);
+        if (!expected || level == reference_level) {
+            continue;
+        }
+        deviations.emplace_back(p.x, deviation);
+        ratio += p.y / expected->first;
+        exponent +=
+            2 + (p.y / expected->first > 0 ? std::log(p.y / expected->first) / std::log(level / reference_level) : 0);
+        square += deviation * deviation;
+        count_deviation(p.x, deviation, group, sum);
+    }
+    group.points = deviations.size();
+    if (group.points > 0) {
+        const auto count = static_cast<double>(group.points);
+        group.mean_ratio = ratio / count;
+        group.exponent = exponent / count;
+        group.rms = std::sqrt(square / count);
+        group.beyond = ranges_beyond(std::move(deviations));
+        sum.exponent += exponent;
+        sum.points += group.points;
+    }
+    return group;
+}
+
 }  // namespace
 
 Collapse collapse(const core::Table& table, const std::string& quantity, const CollapseOptions& options) {
@@ -230,65 +285,26 @@ Collapse collapse(const core::Table& table, const std::string& quantity, const C
     result.reference = most->first;
     const Reference reference(most->second, table.source);
     const bool stated = std::any_of(points.begin(), points.end(), [](const Point& p) { return p.sigma > 0; });
-    std::vector<double> out_x, out_y, out_level, out_deviation;
-    double sum_exponent = 0;
-    std::size_t all = 0, beyond = 0, far_beyond = 0;
+    const double least_error = stated ? 0 : 0.5 * options.tolerance * largest;
+    Against sum;
     for (const auto& [level, members] : groups) {
-        CollapseGroup group;
-        group.level = level;
-        double ratio = 0, exponent = 0, square = 0;
-        std::vector<std::pair<double, double>> deviations;
-        for (const auto& p : members) {
-            const auto expected = reference.at(p.x);
-            const double joint = !expected
-                                     ? 1
-                                     : std::max({std::hypot(expected->second, p.sigma),
-                                                 stated ? 0 : 0.5 * options.tolerance * largest, core::least_divisor});
-            const double deviation = expected ? (p.y - expected->first) / joint : std::nan("");
-            out_x.push_back(p.x);
-            out_y.push_back(p.y);
-            out_level.push_back(level);
-            out_deviation.push_back(deviation);
-            if (!expected || level == result.reference) {
-                continue;
-            }
-            deviations.emplace_back(p.x, deviation);
-            ratio += p.y / expected->first;
-            exponent +=
-                2 +
-                (p.y / expected->first > 0 ? std::log(p.y / expected->first) / std::log(level / result.reference) : 0);
-            square += deviation * deviation;
-            beyond += std::abs(deviation) > 2 ? 1 : 0;
-            far_beyond += std::abs(deviation) > 4 ? 1 : 0;
-            if (std::abs(deviation) >= std::abs(group.worst)) {
-                group.worst = deviation;
-                group.worst_gap = p.x;
-            }
+        CollapseGroup group = compared(level, members, reference, result.reference, least_error, sum);
+        if (group.points > 0) {
+            result.groups.push_back(std::move(group));
         }
-        group.points = deviations.size();
-        if (group.points == 0) {
-            continue;
-        }
-        const auto count = static_cast<double>(group.points);
-        group.mean_ratio = ratio / count;
-        group.exponent = exponent / count;
-        group.rms = std::sqrt(square / count);
-        group.beyond = ranges_beyond(std::move(deviations));
-        sum_exponent += exponent;
-        all += group.points;
-        result.groups.push_back(std::move(group));
     }
     if (result.groups.empty()) {
         throw core::InputError("range", "no gap of another " + result.by + " lies within the gaps of the reference",
                                {table.source, {}, {}, {}});
     }
-    result.exponent = sum_exponent / static_cast<double>(all);
-    result.holds = beyond <= std::max<std::size_t>(1, all / 20) && far_beyond == 0 && (all > 4 || beyond == 0);
-    result.verdict = text_of(result, beyond, all, stated);
-    result.points.add_numbers(result.abscissa, result.abscissa == "gap" ? "m" : "1", out_x);
-    result.points.add_numbers(result.coefficient, result.coefficient_unit, out_y);
-    result.points.add_numbers(result.by, result.by_unit, out_level);
-    result.points.add_numbers("deviation", "1", out_deviation);
+    result.exponent = sum.exponent / static_cast<double>(sum.points);
+    result.holds = sum.beyond <= std::max<std::size_t>(1, sum.points / 20) && sum.far_beyond == 0 &&
+                   (sum.points > 4 || sum.beyond == 0);
+    result.verdict = text_of(result, sum.beyond, sum.points, stated);
+    result.points.add_numbers(result.abscissa, result.abscissa == "gap" ? "m" : "1", sum.x);
+    result.points.add_numbers(result.coefficient, result.coefficient_unit, sum.y);
+    result.points.add_numbers(result.by, result.by_unit, sum.level);
+    result.points.add_numbers("deviation", "1", sum.deviation);
     if (reference.curve) {
         add_curve(result, *reference.curve);
     }

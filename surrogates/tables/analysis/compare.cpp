@@ -146,15 +146,11 @@ std::string noun_of(const std::string& quantity) {
     return noun;
 }
 
-Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>& tables,
-                          const ComparisonOptions& options) {
-    if (tables.empty()) {
-        throw core::UsageError("few", "a comparison needs tables");
-    }
-    Comparison result;
-    result.quantity = tables.front().second.quantity();
-    result.lower = -INFINITY;
-    result.upper = INFINITY;
+namespace {
+
+/// Where each table is cut; they share the range from `lower` to `upper` of the result.
+std::vector<Slice> slices_of(const std::vector<std::pair<std::string, ForceTable>>& tables,
+                             const ComparisonOptions& options, Comparison& result) {
     std::vector<Slice> slices;
     for (const auto& [name, table] : tables) {
         if (table.quantity() != result.quantity) {
@@ -171,34 +167,25 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
         result.upper = std::min(result.upper, table.axes()[k].upper);
         result.names.push_back(name);
     }
-    if (!(result.lower < result.upper)) {
-        throw core::UsageError("range", "the tables have no common range of " + result.axis);
+    return slices;
+}
+
+/// Of the measure of table `number`: the root mean square over draws of the table from its error.
+double error_of(const ForceTable& table, Slice slice, std::size_t number, Measure measure, const Comparison& result) {
+    double square = 0;
+    constexpr int draws = 40;
+    for (int draw = 0; draw < draws; ++draw) {
+        const ForceTable drawn = table.drawn(static_cast<std::uint64_t>(draw) * 131 + number);
+        slice.table = &drawn;
+        square += std::pow(measured(slice, measure, result.lower, result.upper) - result.values[number], 2) / draws;
     }
-    const Measure measure = chosen(options.measure, result.quantity, result.axis);
-    result.measure = name_of(measure);
-    const std::string& force_unit = tables.front().second.unit();
-    const std::string& axis_unit = tables.front().second.axes()[slices.front().axis].unit;
-    result.unit = measure == Measure::restoring_slope   ? unit_per(force_unit, axis_unit)
-                  : measure == Measure::restoring_width ? axis_unit
-                                                        : force_unit;
-    for (std::size_t i = 0; i < slices.size(); ++i) {
-        result.values.push_back(measured(slices[i], measure, result.lower, result.upper));
-        double square = 0;
-        constexpr int draws = 40;
-        for (int draw = 0; draw < draws; ++draw) {
-            const ForceTable drawn = tables[i].second.drawn(static_cast<std::uint64_t>(draw) * 131 + i);
-            Slice slice = slices[i];
-            slice.table = &drawn;
-            square += std::pow(measured(slice, measure, result.lower, result.upper) - result.values[i], 2) / draws;
-        }
-        result.errors.push_back(std::sqrt(square));
-        for (std::size_t j = 0; j < i; ++j) {
-            result.differences.push_back(
-                difference(result.names[j], slices[j], result.names[i], slices[i], result.lower, result.upper));
-        }
-    }
+    return std::sqrt(square);
+}
+
+/// The best by the measure, unless none restores; whether it is so beyond the errors.
+void choose_winner(Comparison& result, Measure measure, const std::vector<std::pair<std::string, ForceTable>>& tables) {
     const bool low_wins = measure == Measure::lowest || measure == Measure::smallest;
-    std::vector<std::size_t> order(slices.size());
+    std::vector<std::size_t> order(tables.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return low_wins ? result.values[a] < result.values[b] : result.values[a] > result.values[b];
@@ -212,6 +199,39 @@ Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>&
             result.errors_known && std::abs(result.values[order[0]] - result.values[order[1]]) >
                                        2 * std::hypot(result.errors[order[0]], result.errors[order[1]]);
     }
+}
+
+}  // namespace
+
+Comparison compare_tables(const std::vector<std::pair<std::string, ForceTable>>& tables,
+                          const ComparisonOptions& options) {
+    if (tables.empty()) {
+        throw core::UsageError("few", "a comparison needs tables");
+    }
+    Comparison result;
+    result.quantity = tables.front().second.quantity();
+    result.lower = -INFINITY;
+    result.upper = INFINITY;
+    const std::vector<Slice> slices = slices_of(tables, options, result);
+    if (!(result.lower < result.upper)) {
+        throw core::UsageError("range", "the tables have no common range of " + result.axis);
+    }
+    const Measure measure = chosen(options.measure, result.quantity, result.axis);
+    result.measure = name_of(measure);
+    const std::string& force_unit = tables.front().second.unit();
+    const std::string& axis_unit = tables.front().second.axes()[slices.front().axis].unit;
+    result.unit = measure == Measure::restoring_slope   ? unit_per(force_unit, axis_unit)
+                  : measure == Measure::restoring_width ? axis_unit
+                                                        : force_unit;
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        result.values.push_back(measured(slices[i], measure, result.lower, result.upper));
+        result.errors.push_back(error_of(tables[i].second, slices[i], i, measure, result));
+        for (std::size_t j = 0; j < i; ++j) {
+            result.differences.push_back(
+                difference(result.names[j], slices[j], result.names[i], slices[i], result.lower, result.upper));
+        }
+    }
+    choose_winner(result, measure, tables);
     return result;
 }
 

@@ -188,6 +188,28 @@ Line net_force(const ForceTable& table, const EquilibriumOptions& options) {
     return line_of(table, axis, held_point(table, axis, options.held), options);
 }
 
+namespace {
+
+/// Error, frequency, damping and kicks of one of the equilibria; `error` is that of the force there.
+void describe(Equilibria& result, std::size_t i, const Line& force, double error, const EquilibriumOptions& options) {
+    Equilibrium& e = result.all[i];
+    e.sigma = error == 0                           ? 0
+              : e.stability == Stability::marginal ? std::numeric_limits<double>::infinity()
+                                                   : error / std::abs(e.stiffness);
+    const double mass = options.virtual_mass;
+    if (mass > 0 && e.stability == Stability::stable) {
+        e.frequency = std::sqrt(e.stiffness / mass) / (2 * std::numbers::pi);
+        e.damping_ratio = options.damping / (2 * std::sqrt(e.stiffness * mass));
+    } else if (mass > 0 && e.stability == Stability::unstable) {
+        e.growth_rate = std::sqrt(-e.stiffness / mass);
+    }
+    if (e.stability == Stability::stable) {
+        fill_kicks(e, force, result.all, i, mass);
+    }
+}
+
+}  // namespace
+
 Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options) {
     if (!(options.virtual_mass >= 0) || !(options.damping >= 0) || !std::isfinite(options.net_weight) ||
         !std::isfinite(options.scale)) {
@@ -220,22 +242,8 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
     result.all = find(force);
     result.extremes = force.extremes();
     for (std::size_t i = 0; i < result.all.size(); ++i) {
-        Equilibrium& e = result.all[i];
-        point[axis] = e.gap;
-        const double error = std::abs(options.scale) * table.sigma(point.data());
-        e.sigma = error == 0                           ? 0
-                  : e.stability == Stability::marginal ? std::numeric_limits<double>::infinity()
-                                                       : error / std::abs(e.stiffness);
-        const double mass = options.virtual_mass;
-        if (mass > 0 && e.stability == Stability::stable) {
-            e.frequency = std::sqrt(e.stiffness / mass) / (2 * std::numbers::pi);
-            e.damping_ratio = options.damping / (2 * std::sqrt(e.stiffness * mass));
-        } else if (mass > 0 && e.stability == Stability::unstable) {
-            e.growth_rate = std::sqrt(-e.stiffness / mass);
-        }
-        if (e.stability == Stability::stable) {
-            fill_kicks(e, force, result.all, i, mass);
-        }
+        point[axis] = result.all[i].gap;
+        describe(result, i, force, std::abs(options.scale) * table.sigma(point.data()), options);
     }
     if (options.draws > 0) {
         fill_from_draws(result, table, axis, point, options);
@@ -247,6 +255,7 @@ namespace {
 nlohmann::json finite_or_null(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
+
 nlohmann::json or_null(const std::optional<double>& value) { return value ? finite_or_null(*value) : nlohmann::json(); }
 }  // namespace
 

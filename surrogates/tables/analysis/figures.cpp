@@ -248,40 +248,16 @@ core::Figure family_figure(const ForceTable& table, const std::string& axis_name
     return figure;
 }
 
-core::Figure map_figure(const ForceTable& table, const std::string& x_axis, const std::string& y_axis,
-                        const FigureOptions& options) {
-    const std::size_t kx = axis_index(table, x_axis);
-    const std::size_t ky = axis_index(table, y_axis);
-    auto at = base_point(table, options.held);
-    const auto& ax = table.axes()[kx];
-    const auto& ay = table.axes()[ky];
-    const auto x_shown = to_shown(table, ax.name, ax.unit);
-    const auto y_shown = to_shown(table, ay.name, ay.unit);
+namespace {
+
+/// Fills a map of a table over two axes; what lies outside the points is left blank. Whether anything is blank.
+bool fill(core::FigureMap& map, const ForceTable& table, std::size_t kx, std::size_t ky, std::vector<double> at) {
+    const auto &ax = table.axes()[kx], &ay = table.axes()[ky];
     const auto v_shown = to_shown(table, table.quantity(), table.unit());
-    core::Figure figure;
-    figure.x = axis_of(table, ax.name);
-    figure.y = axis_of(table, ay.name);
-    figure.title = options.title.empty() ? table.quantity() + " over " + ax.name + " and " + ay.name : options.title;
-    const std::string held = described(table, kx, at, ky);
-    figure.title += held.empty() ? "" : " at " + held;
-    figure.caption = caption_of(table) + (held.empty() ? "" : " At " + held + ".");
-    core::FigureMap map;
-    map.columns = map.rows = static_cast<std::size_t>(std::clamp(options.samples / 2, 20, 400));
-    // Along a logarithmic axis cells of one ratio look alike on the picture.
-    figure.x.logarithmic = map.x_by_ratio = is_logarithmic(table, kx, options);
-    figure.y.logarithmic = map.y_by_ratio = is_logarithmic(table, ky, options);
-    map.columns *= map.x_by_ratio ? 2 : 1;
-    map.rows *= map.y_by_ratio ? 2 : 1;
     const auto middle_of = [](std::size_t cell, std::size_t cells, double lower, double upper, bool by_ratio) {
         const double part = (static_cast<double>(cell) + 0.5) / static_cast<double>(cells);
         return by_ratio ? lower * std::pow(upper / lower, part) : lower + (upper - lower) * part;
     };
-    map.x_lower = x_shown(ax.lower);
-    map.x_upper = x_shown(ax.upper);
-    map.y_lower = y_shown(ay.lower);
-    map.y_upper = y_shown(ay.upper);
-    map.label = table.quantity();
-    map.unit = shown_unit(table, table.quantity());
     double low = INFINITY;
     double high = -INFINITY;
     bool blank = false;
@@ -300,18 +276,20 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
         }
     }
     map.diverging = low < 0 && high > 0;
-    if (blank) {
-        figure.caption += " Blank: outside the points, where the table only extrapolates.";
-        figure.title += " (blank: outside the points)";
-    }
-    figure.maps.push_back(std::move(map));
+    return blank;
+}
+
+/// The points of the table, unless they are too many to see anything else.
+template <class Shown>
+void add_points(core::Figure& figure, const ForceTable& table, const std::string& x_axis, const std::string& y_axis,
+                const Shown& x_shown, const Shown& y_shown) {
     core::FigurePoints points;
     points.name = "points";
     points.shape = core::FigurePoints::Shape::circle;
     points.colour = {40, 40, 40, 200};
     points.size = 5;
-    const auto& px = table.points().numbers(ax.name);
-    const auto& py = table.points().numbers(ay.name);
+    const auto& px = table.points().numbers(x_axis);
+    const auto& py = table.points().numbers(y_axis);
     for (std::size_t i = 0; i < px.size() && px.size() <= 2000; ++i) {
         points.x.push_back(x_shown(px[i]));
         points.y.push_back(y_shown(py[i]));
@@ -319,6 +297,46 @@ core::Figure map_figure(const ForceTable& table, const std::string& x_axis, cons
     if (!points.x.empty()) {
         figure.points.push_back(std::move(points));
     }
+}
+
+}  // namespace
+
+core::Figure map_figure(const ForceTable& table, const std::string& x_axis, const std::string& y_axis,
+                        const FigureOptions& options) {
+    const std::size_t kx = axis_index(table, x_axis);
+    const std::size_t ky = axis_index(table, y_axis);
+    const auto at = base_point(table, options.held);
+    const auto& ax = table.axes()[kx];
+    const auto& ay = table.axes()[ky];
+    const auto x_shown = to_shown(table, ax.name, ax.unit);
+    const auto y_shown = to_shown(table, ay.name, ay.unit);
+    core::Figure figure;
+    figure.x = axis_of(table, ax.name);
+    figure.y = axis_of(table, ay.name);
+    figure.title = options.title.empty() ? table.quantity() + " over " + ax.name + " and " + ay.name : options.title;
+    const std::string held = described(table, kx, at, ky);
+    figure.title += held.empty() ? "" : " at " + held;
+    figure.caption = caption_of(table) + (held.empty() ? "" : " At " + held + ".");
+    core::FigureMap map;
+    map.columns = map.rows = static_cast<std::size_t>(std::clamp(options.samples / 2, 20, 400));
+    // Along a logarithmic axis cells of one ratio look alike on the picture.
+    figure.x.logarithmic = map.x_by_ratio = is_logarithmic(table, kx, options);
+    figure.y.logarithmic = map.y_by_ratio = is_logarithmic(table, ky, options);
+    map.columns *= map.x_by_ratio ? 2 : 1;
+    map.rows *= map.y_by_ratio ? 2 : 1;
+    map.x_lower = x_shown(ax.lower);
+    map.x_upper = x_shown(ax.upper);
+    map.y_lower = y_shown(ay.lower);
+    map.y_upper = y_shown(ay.upper);
+    map.label = table.quantity();
+    map.unit = shown_unit(table, table.quantity());
+    const bool blank = fill(map, table, kx, ky, at);
+    if (blank) {
+        figure.caption += " Blank: outside the points, where the table only extrapolates.";
+        figure.title += " (blank: outside the points)";
+    }
+    figure.maps.push_back(std::move(map));
+    add_points(figure, table, ax.name, ay.name, x_shown, y_shown);
     return figure;
 }
 

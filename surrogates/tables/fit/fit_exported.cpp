@@ -96,6 +96,78 @@ Support read_support(const nlohmann::json& json, std::size_t axes) {
     return {std::move(lines), std::move(cells)};
 }
 
+/// Values with their slopes at each node, and the stated error there.
+struct NodeValues {
+    std::vector<double> hermite, sigma;
+};
+
+NodeValues node_values(const SetPoints& points, const core::Table& table, const std::string& quantity,
+                       const std::vector<std::string>& columns) {
+    const std::size_t width = columns.size();
+    std::vector<double> hermite(points.order.size() * width);
+    std::vector<double> sigma(points.order.size(), 0.0);
+    const core::Column* errors = table.find(quantity + "_sigma");
+    for (std::size_t node = 0; node < points.order.size(); ++node) {
+        const std::size_t row = points.row[points.order[node]];
+        for (std::size_t m = 0; m < width; ++m) {
+            const double v = points.table.numbers(columns[m])[row];
+            if (!std::isfinite(v)) {
+                throw core::InputError("missing", "an exported table lacks a slope",
+                                       points.table.place(row, columns[m]), "export it again");
+            }
+            hermite[node * width + m] = v;
+        }
+        const double s = errors != nullptr && !errors->is_text() ? points.table.numbers(errors->name)[row] : 0;
+        sigma[node] = std::isfinite(s) ? s : 0;
+    }
+    return {std::move(hermite), std::move(sigma)};
+}
+
+/// The error between the nodes, and how it grows beyond them.
+void set_error_between(ErrorModel& error, const nlohmann::json& facts, const std::vector<std::vector<double>>& grid) {
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+        if (facts.contains("cell_error") && facts["cell_error"].size() == grid.size() &&
+            facts["cell_error"][k].size() + 1 == grid[k].size()) {
+            error.set_cell_error(k, facts["cell_error"][k].get<std::vector<double>>());
+        }
+        if (facts.contains("growth") && facts["growth"].size() == grid.size()) {
+            error.set_growth(k, facts["growth"][k].get<ErrorModel::Growth>());
+        }
+    }
+}
+
+/// What an export says of its table beside the values.
+void take_facts(ForceTable::Impl& result, const nlohmann::json& facts, const core::Table& table,
+                const SetPoints& points, const FitOptions& options) {
+    result.quantity = points.quantity;
+    result.unit = points.unit;
+    result.source = table.source;
+    result.axes = points.axes;
+    result.points = points.table;
+    result.constants = points.constants;
+    for (std::size_t k = 0; k < result.axes.size(); ++k) {
+        result.axes[k].range = options.range.of(result.axes[k].name, exported_policy(facts, k));
+    }
+    const nlohmann::json conditions = facts.value("conditions", nlohmann::json::object());
+    for (const auto& [name, value] : conditions.items()) {
+        result.constants.emplace_back(name, value.get<double>());
+    }
+    set_known_range(result.axes, facts);
+    if (facts.contains("support")) {
+        result.support = std::make_shared<Support>(read_support(facts["support"], result.axes.size()));
+    }
+    if (facts.contains("hull")) {
+        result.hull = std::make_shared<Hull>(result.axes, facts["hull"].get<std::vector<std::vector<double>>>());
+    }
+    result.kind = "exported grid";
+    result.remarks.push_back({core::Problem::Severity::note,
+                              "an exported table: taken with its slopes and error, not fitted again",
+                              {table.source, {}, {}, {}}});
+    for (const auto& warning : facts.value("warnings", std::vector<std::string>{})) {
+        result.remarks.push_back({core::Problem::Severity::warning, warning, {table.source, {}, {}, {}}});
+    }
+}
+
 std::shared_ptr<const ForceTable::Impl> table_of_export(const nlohmann::json& facts, const core::Table& table,
                                                         const std::string& quantity, const FitOptions& options) {
     FitOptions named = options;
@@ -119,66 +191,16 @@ std::shared_ptr<const ForceTable::Impl> table_of_export(const nlohmann::json& fa
             {table.source, {}, {}, {}}, "export it again");
     }
     auto result = std::make_shared<ForceTable::Impl>();
-    result->quantity = points.quantity;
-    result->unit = points.unit;
-    result->source = table.source;
-    result->axes = points.axes;
-    result->points = points.table;
-    result->constants = points.constants;
-    for (std::size_t k = 0; k < result->axes.size(); ++k) {
-        result->axes[k].range = options.range.of(result->axes[k].name, exported_policy(facts, k));
-    }
-    const nlohmann::json conditions = facts.value("conditions", nlohmann::json::object());
-    for (const auto& [name, value] : conditions.items()) {
-        result->constants.emplace_back(name, value.get<double>());
-    }
-    set_known_range(result->axes, facts);
-    if (facts.contains("support")) {
-        result->support = std::make_shared<Support>(read_support(facts["support"], result->axes.size()));
-    }
-    if (facts.contains("hull")) {
-        result->hull = std::make_shared<Hull>(result->axes, facts["hull"].get<std::vector<std::vector<double>>>());
-    }
-    result->kind = "exported grid";
-    result->remarks.push_back({core::Problem::Severity::note,
-                               "an exported table: taken with its slopes and error, not fitted again",
-                               {table.source, {}, {}, {}}});
-    for (const auto& warning : facts.value("warnings", std::vector<std::string>{})) {
-        result->remarks.push_back({core::Problem::Severity::warning, warning, {table.source, {}, {}, {}}});
-    }
+    take_facts(*result, facts, table, points, options);
     result->told = facts.value("told", std::vector<std::string>{});
     std::vector<std::vector<double>> grid;
     for (const auto& axis : points.axes) {
         grid.push_back(axis.points);
     }
-    const std::size_t width = columns.size();
-    std::vector<double> hermite(points.order.size() * width);
-    std::vector<double> sigma(points.order.size(), 0.0);
-    const core::Column* errors = table.find(quantity + "_sigma");
-    for (std::size_t node = 0; node < points.order.size(); ++node) {
-        const std::size_t row = points.row[points.order[node]];
-        for (std::size_t m = 0; m < width; ++m) {
-            const double v = points.table.numbers(columns[m])[row];
-            if (!std::isfinite(v)) {
-                throw core::InputError("missing", "an exported table lacks a slope",
-                                       points.table.place(row, columns[m]), "export it again");
-            }
-            hermite[node * width + m] = v;
-        }
-        const double s = errors != nullptr && !errors->is_text() ? points.table.numbers(errors->name)[row] : 0;
-        sigma[node] = std::isfinite(s) ? s : 0;
-    }
-    result->surface = CubicGrid(grid, std::move(hermite));
-    result->error = ErrorModel(grid, std::move(sigma));
-    for (std::size_t k = 0; k < grid.size(); ++k) {
-        if (facts.contains("cell_error") && facts["cell_error"].size() == grid.size() &&
-            facts["cell_error"][k].size() + 1 == grid[k].size()) {
-            result->error.set_cell_error(k, facts["cell_error"][k].get<std::vector<double>>());
-        }
-        if (facts.contains("growth") && facts["growth"].size() == grid.size()) {
-            result->error.set_growth(k, facts["growth"][k].get<ErrorModel::Growth>());
-        }
-    }
+    NodeValues nodes = node_values(points, table, quantity, columns);
+    result->surface = CubicGrid(grid, std::move(nodes.hermite));
+    result->error = ErrorModel(grid, std::move(nodes.sigma));
+    set_error_between(result->error, facts, grid);
     return result;
 }
 

@@ -55,6 +55,30 @@ void check_spread(const SetPoints& points) {
     }
 }
 
+/// The points in each box of a grid of `side` boxes along each axis; a gap that spans a factor of four counts by its
+/// logarithm.
+std::vector<std::vector<std::size_t>> boxes_of(const SetPoints& points, std::size_t side) {
+    const std::size_t n = points.axes.size();
+    std::vector<std::vector<std::size_t>> boxes;
+    std::size_t total = 1;
+    for (std::size_t k = 0; k < n; ++k) {
+        total *= side;
+    }
+    boxes.resize(total);
+    for (std::size_t i = 0; i < points.x.size(); ++i) {
+        std::size_t box = 0;
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto& axis = points.axes[k];
+            const bool log = axis.name == "gap" && axis.lower > 0 && axis.upper / axis.lower >= 4;
+            const double t = log ? std::log(points.x[i][k] / axis.lower) / std::log(axis.upper / axis.lower)
+                                 : (points.x[i][k] - axis.lower) / (axis.upper - axis.lower);
+            box = box * side + std::min(side - 1, static_cast<std::size_t>(t * static_cast<double>(side)));
+        }
+        boxes[box].push_back(i);
+    }
+    return boxes;
+}
+
 /// More points than a dense process can take are averaged over the boxes of a regular grid.
 SetPoints reduced(const SetPoints& points, std::size_t most, core::Problems& remarks) {
     if (points.x.size() <= most) {
@@ -65,23 +89,7 @@ SetPoints reduced(const SetPoints& points, std::size_t most, core::Problems& rem
     for (std::size_t side =
              static_cast<std::size_t>(std::pow(static_cast<double>(most), 1.0 / static_cast<double>(n))) + 1;
          side > 1; --side) {
-        std::vector<std::vector<std::size_t>> boxes;
-        std::size_t total = 1;
-        for (std::size_t k = 0; k < n; ++k) {
-            total *= side;
-        }
-        boxes.resize(total);
-        for (std::size_t i = 0; i < points.x.size(); ++i) {
-            std::size_t box = 0;
-            for (std::size_t k = 0; k < n; ++k) {
-                const auto& axis = points.axes[k];
-                const bool log = axis.name == "gap" && axis.lower > 0 && axis.upper / axis.lower >= 4;
-                const double t = log ? std::log(points.x[i][k] / axis.lower) / std::log(axis.upper / axis.lower)
-                                     : (points.x[i][k] - axis.lower) / (axis.upper - axis.lower);
-                box = box * side + std::min(side - 1, static_cast<std::size_t>(t * static_cast<double>(side)));
-            }
-            boxes[box].push_back(i);
-        }
+        const std::vector<std::vector<std::size_t>> boxes = boxes_of(points, side);
         const auto filled = static_cast<std::size_t>(
             std::count_if(boxes.begin(), boxes.end(), [](const auto& b) { return !b.empty(); }));
         if (filled > most) {
@@ -320,6 +328,20 @@ Scatter scatter_of(const SetPoints& points, std::vector<ProcessCandidate> candid
     return scatter;
 }
 
+namespace {
+
+/// What a table says of its points.
+void describe_points(ForceTable::Impl& table, const SetPoints& points) {
+    table.quantity = points.quantity;
+    table.unit = points.unit;
+    table.source = points.table.source;
+    table.axes = points.axes;
+    table.points = points.table;
+    table.constants = points.constants;
+}
+
+}  // namespace
+
 std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_points, std::vector<double>* misses,
                                                        std::vector<ProcessCandidate> candidates) {
     check_spread(all_points);
@@ -338,12 +360,7 @@ std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_poin
         }
     }
     auto table = std::make_shared<ForceTable::Impl>();
-    table->quantity = points.quantity;
-    table->unit = points.unit;
-    table->source = points.table.source;
-    table->axes = points.axes;
-    table->points = points.table;
-    table->constants = points.constants;
+    describe_points(*table, points);
     table->kind = "Gaussian process";
     table->rule = SlopeRule::not_a_knot;
     remarks.push_back({core::Problem::Severity::note, described(*mixture, points), {points.table.source, {}, {}, {}}});

@@ -284,7 +284,22 @@ struct Optimum {
     double value = 0;
 };
 
-/// BFGS with backtracking; a handful of unknowns, each evaluation dear.
+/// The inverse Hessian after a step s that changed the gradient by y.
+void update(MatrixXd& inverse, const std::vector<double>& v, const std::vector<double>& next,
+            const std::vector<double>& g, const std::vector<double>& g_next) {
+    const auto n = static_cast<Eigen::Index>(v.size());
+    VectorXd s(n), y(n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+        s(j) = next[j] - v[j];
+        y(j) = g_next[j] - g[j];
+    }
+    if (const double sy = s.dot(y); sy > 1e-12) {
+        const MatrixXd left = MatrixXd::Identity(n, n) - s * y.transpose() / sy;
+        inverse = left * inverse * left.transpose() + s * s.transpose() / sy;
+    }
+}
+
+/// BFGS with backtracking; a handful of unknowns, each evaluation expensive.
 Optimum minimise(Objective& f, std::vector<double> v, int evaluations, core::Progress& progress) {
     const auto n = static_cast<Eigen::Index>(v.size());
     std::vector<double> g(v.size()), g_next(v.size()), next(v.size());
@@ -320,19 +335,11 @@ Optimum minimise(Objective& f, std::vector<double> v, int evaluations, core::Pro
         if (!found) {
             break;
         }
-        VectorXd s(n), y(n);
-        for (Eigen::Index j = 0; j < n; ++j) {
-            s(j) = next[j] - v[j];
-            y(j) = g_next[j] - g[j];
-        }
+        update(inverse, v, next, g, g_next);
         const double gain = value - next_value;
         v = next;
         g = g_next;
         value = next_value;
-        if (const double sy = s.dot(y); sy > 1e-12) {
-            const MatrixXd left = MatrixXd::Identity(n, n) - s * y.transpose() / sy;
-            inverse = left * inverse * left.transpose() + s * s.transpose() / sy;
-        }
         if (gain < 1e-3 && Eigen::Map<VectorXd>(g.data(), n).cwiseAbs().maxCoeff() < 0.05) {
             break;
         }

@@ -116,6 +116,70 @@ void CubicGrid::limit_cross_slopes() {
     }
 }
 
+namespace {
+
+/// What the Bezier points of one node ask of its slopes: the room of the cross slope where there are two axes, and the
+/// shares of cross slopes and of slopes that keep every point within its cell.
+struct SlopeRoom {
+    double cross_lower = -std::numeric_limits<double>::infinity();
+    double cross_upper = std::numeric_limits<double>::infinity();
+    double cross_share = 1;  ///< of the cross slopes, when they give way together
+    double slope_share = 1;  ///< of the slopes, without cross slopes
+    bool cross_fits = true, slopes_fit = true;
+};
+
+/// The Bezier point that goes `step` from the node along the axes of `set`, whose value may lie from `down` to `up`
+/// away from the node's.
+void keep_within(SlopeRoom& room, const double* data, std::size_t set, std::span<const double> step, double down,
+                 double up) {
+    double linear = 0;
+    double cross = 0;
+    double factor_of_full = 0;
+    for (std::size_t part = 1; part <= set; ++part) {
+        if ((part & set) != part) {
+            continue;
+        }
+        double product = 1;
+        for (std::size_t k = 0; k < step.size(); ++k) {
+            product *= (part >> k & 1) != 0 ? step[k] : 1;
+        }
+        ((part & (part - 1)) == 0 ? linear : cross) += product * data[part];
+        factor_of_full = product;
+    }
+    if (linear > up || linear < down) {
+        room.slopes_fit = false;
+        room.slope_share = std::min(room.slope_share, std::max(0.0, (linear > up ? up : down) / linear));
+    }
+    if (linear + cross > up || linear + cross < down) {
+        room.cross_fits = false;
+        const double left = (linear + cross > up ? up : down) - linear;
+        room.cross_share = std::min(room.cross_share, std::max(0.0, left / cross));
+    }
+    if (step.size() == 2) {
+        const double a = (down - linear) / factor_of_full;
+        const double b = (up - linear) / factor_of_full;
+        room.cross_lower = std::max(room.cross_lower, std::min(a, b));
+        room.cross_upper = std::min(room.cross_upper, std::max(a, b));
+    }
+}
+
+void make_room(const SlopeRoom& room, double* data, std::size_t axes) {
+    if (room.cross_fits) {
+        return;
+    }
+    if (axes == 2 && room.cross_lower <= room.cross_upper) {
+        data[3] = std::clamp(data[3], room.cross_lower, room.cross_upper);
+        return;
+    }
+    const double share = room.slopes_fit ? 1 : room.slope_share;
+    for (std::size_t part = 1; part < std::size_t{1} << axes; ++part) {
+        const bool single = (part & (part - 1)) == 0;
+        data[part] *= single ? share : (room.slopes_fit ? room.cross_share : 0);
+    }
+}
+
+}  // namespace
+
 /// Every Bezier point of a cell belongs to one of its corners; here those of one node, over all cells around it, are
 /// kept between the smallest and the largest corner of their cell: first the cross slopes give way, then all slopes.
 void CubicGrid::limit_node(std::size_t node, std::span<const std::size_t> index) {
@@ -123,12 +187,7 @@ void CubicGrid::limit_node(std::size_t node, std::span<const std::size_t> index)
     const std::size_t width = std::size_t{1} << n;
     double* data = &nodes_[node * width];
     const double f = data[0];
-    double cross_lower = -std::numeric_limits<double>::infinity();
-    double cross_upper = std::numeric_limits<double>::infinity();
-    double cross_share = 1;  // of the cross slopes, when they give way together
-    double slope_share = 1;  // of the slopes, without cross slopes
-    bool cross_fits = true;
-    bool slopes_fit = true;
+    SlopeRoom slopes;
     for (std::size_t side = 0; side < width; ++side) {  // bit k: the cell above the node along axis k
         std::array<double, max_axes> step{};
         bool exists = true;
@@ -160,51 +219,10 @@ void CubicGrid::limit_node(std::size_t node, std::span<const std::size_t> index)
             if ((set & (set - 1)) == 0) {
                 continue;  // along one axis the slopes are limited already
             }
-            double linear = 0;
-            double cross = 0;
-            double factor_of_full = 0;
-            for (std::size_t part = 1; part <= set; ++part) {
-                if ((part & set) != part) {
-                    continue;
-                }
-                double product = 1;
-                for (std::size_t k = 0; k < n; ++k) {
-                    product *= (part >> k & 1) != 0 ? step[k] : 1;
-                }
-                ((part & (part - 1)) == 0 ? linear : cross) += product * data[part];
-                factor_of_full = product;
-            }
-            const double down = lowest - f - room;
-            const double up = highest - f + room;
-            if (linear > up || linear < down) {
-                slopes_fit = false;
-                slope_share = std::min(slope_share, std::max(0.0, (linear > up ? up : down) / linear));
-            }
-            if (linear + cross > up || linear + cross < down) {
-                cross_fits = false;
-                const double left = (linear + cross > up ? up : down) - linear;
-                cross_share = std::min(cross_share, std::max(0.0, left / cross));
-            }
-            if (n == 2) {
-                const double a = (down - linear) / factor_of_full;
-                const double b = (up - linear) / factor_of_full;
-                cross_lower = std::max(cross_lower, std::min(a, b));
-                cross_upper = std::min(cross_upper, std::max(a, b));
-            }
+            keep_within(slopes, data, set, {step.data(), n}, lowest - f - room, highest - f + room);
         }
     }
-    if (cross_fits) {
-        return;
-    }
-    if (n == 2 && cross_lower <= cross_upper) {
-        data[3] = std::clamp(data[3], cross_lower, cross_upper);
-        return;
-    }
-    const double share = slopes_fit ? 1 : slope_share;
-    for (std::size_t part = 1; part < width; ++part) {
-        const bool single = (part & (part - 1)) == 0;
-        data[part] *= single ? share : (slopes_fit ? cross_share : 0);
-    }
+    make_room(slopes, data, n);
 }
 
 namespace {

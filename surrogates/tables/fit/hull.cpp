@@ -32,6 +32,80 @@ double Hull::coordinate(std::size_t k, double x) const {
                              : (x - axis.lower) / (axis.upper - axis.lower);
 }
 
+namespace {
+
+/// A point of a hull as a mean of a few of its points: their columns, and their weights.
+struct MeanOfCorners {
+    std::vector<Eigen::Index> corners;
+    std::vector<double> weight;
+};
+
+/// Toward the nearest point to the origin of the plane through the corners, until a corner's weight vanishes, which is
+/// then dropped; again until the nearest point itself is a mean of them.
+void move_to_nearest(MeanOfCorners& mean, const Eigen::MatrixXd& q) {
+    using Eigen::Index;
+    auto& [corners, weight] = mean;
+    while (true) {
+        const auto m = static_cast<Index>(corners.size());
+        Eigen::MatrixXd system = Eigen::MatrixXd::Ones(m + 1, m + 1);
+        system(m, m) = 0;
+        for (Index i = 0; i < m; ++i) {
+            for (Index j = 0; j < m; ++j) {
+                system(i, j) =
+                    q.col(corners[static_cast<std::size_t>(i)]).dot(q.col(corners[static_cast<std::size_t>(j)]));
+            }
+        }
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(m + 1);
+        right(m) = 1;
+        const Eigen::VectorXd wanted = system.fullPivLu().solve(right).head(m);
+        double share = 1;
+        for (Index i = 0; i < m; ++i) {
+            const double w = weight[static_cast<std::size_t>(i)];
+            if (wanted(i) < 1e-12 && w > wanted(i)) {
+                share = std::min(share, w / (w - wanted(i)));
+            }
+        }
+        for (Index i = m; i-- > 0;) {
+            double& w = weight[static_cast<std::size_t>(i)];
+            w += share * (wanted(i) - w);
+            if (w < 1e-12 && corners.size() > 1) {
+                weight.erase(weight.begin() + i);
+                corners.erase(corners.begin() + i);
+            }
+        }
+        if (share >= 1 || corners.size() == 1) {
+            break;
+        }
+    }
+}
+
+/// Of the hull of the columns. The nearest point is a mean of a few of them, found by adding the column furthest along
+/// the way to the origin (Wolfe 1976).
+double distance_from_origin(const Eigen::MatrixXd& q) {
+    Eigen::Index first = 0;
+    q.colwise().squaredNorm().minCoeff(&first);
+    MeanOfCorners mean{{first}, {1}};
+    Eigen::VectorXd nearest = q.col(first);
+    for (int outer = 0; outer < 100 && nearest.squaredNorm() > 1e-20; ++outer) {
+        Eigen::Index next = 0;
+        const double lowest = (q.transpose() * nearest).minCoeff(&next);
+        if (lowest >= nearest.squaredNorm() - 1e-12 ||
+            std::find(mean.corners.begin(), mean.corners.end(), next) != mean.corners.end()) {
+            break;
+        }
+        mean.corners.push_back(next);
+        mean.weight.push_back(0);
+        move_to_nearest(mean, q);
+        nearest.setZero();
+        for (std::size_t i = 0; i < mean.corners.size(); ++i) {
+            nearest += mean.weight[i] * q.col(mean.corners[i]);
+        }
+    }
+    return nearest.norm();
+}
+
+}  // namespace
+
 double Hull::distance(const double* low, const double* high) const {
     using Eigen::Index;
     const auto n = static_cast<Index>(axes_.size());
@@ -53,63 +127,7 @@ double Hull::distance(const double* low, const double* high) const {
         }
         q.middleCols(corner * hull.cols(), hull.cols()) = hull.colwise() - at;
     }
-    // The nearest point of the hull is a mean of a few of its points ("corners"), found by adding the point furthest
-    // along the way to `at`.
-    std::vector<Index> corners;
-    std::vector<double> weight;
-    Index first = 0;
-    q.colwise().squaredNorm().minCoeff(&first);
-    corners.push_back(first);
-    weight.push_back(1);
-    Eigen::VectorXd nearest = q.col(first);
-    for (int outer = 0; outer < 100 && nearest.squaredNorm() > 1e-20; ++outer) {
-        Index next = 0;
-        const double lowest = (q.transpose() * nearest).minCoeff(&next);
-        if (lowest >= nearest.squaredNorm() - 1e-12 ||
-            std::find(corners.begin(), corners.end(), next) != corners.end()) {
-            break;
-        }
-        corners.push_back(next);
-        weight.push_back(0);
-        while (true) {
-            // Nearest point of the plane through the corners.
-            const auto m = static_cast<Index>(corners.size());
-            Eigen::MatrixXd system = Eigen::MatrixXd::Ones(m + 1, m + 1);
-            system(m, m) = 0;
-            for (Index i = 0; i < m; ++i) {
-                for (Index j = 0; j < m; ++j) {
-                    system(i, j) =
-                        q.col(corners[static_cast<std::size_t>(i)]).dot(q.col(corners[static_cast<std::size_t>(j)]));
-                }
-            }
-            Eigen::VectorXd right = Eigen::VectorXd::Zero(m + 1);
-            right(m) = 1;
-            const Eigen::VectorXd wanted = system.fullPivLu().solve(right).head(m);
-            double share = 1;
-            for (Index i = 0; i < m; ++i) {
-                const double w = weight[static_cast<std::size_t>(i)];
-                if (wanted(i) < 1e-12 && w > wanted(i)) {
-                    share = std::min(share, w / (w - wanted(i)));
-                }
-            }
-            for (Index i = m; i-- > 0;) {
-                double& w = weight[static_cast<std::size_t>(i)];
-                w += share * (wanted(i) - w);
-                if (w < 1e-12 && corners.size() > 1) {
-                    weight.erase(weight.begin() + i);
-                    corners.erase(corners.begin() + i);
-                }
-            }
-            if (share >= 1 || corners.size() == 1) {
-                break;
-            }
-        }
-        nearest.setZero();
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            nearest += weight[i] * q.col(corners[i]);
-        }
-    }
-    const double distance = nearest.norm();
+    const double distance = distance_from_origin(q);
     return distance < 1e-9 ? 0 : distance;
 }
 

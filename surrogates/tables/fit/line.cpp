@@ -21,6 +21,27 @@ std::size_t axis_index(const ForceTable& table, const std::string& name) {
                            core::did_you_mean(name, names));
 }
 
+namespace {
+
+/// A value that may be held of an axis.
+void check_held(const ForceTable& table, std::size_t k, std::optional<std::size_t> free_axis, double value) {
+    const auto& axes = table.axes();
+    const std::string& name = axes[k].name;
+    if (k == free_axis) {
+        throw core::UsageError("axis", name + " cannot be held: it is what varies", {table.source(), {}, {}, {}});
+    }
+    if (!std::isfinite(value)) {
+        throw core::UsageError("range", name + " is not finite", {table.source(), {}, {}, {}});
+    }
+    if (name == "gap" && value < 0 && axes[k].lower >= 0) {
+        throw core::UsageError("range", "a gap of " + core::format_number(1e3 * value, 6) + " mm lies in the ground",
+                               {table.source(), {}, {}, {}},
+                               "the table begins at " + core::format_number(1e3 * axes[k].lower, 6) + " mm");
+    }
+}
+
+}  // namespace
+
 std::vector<double> held_point(const ForceTable& table, std::optional<std::size_t> free_axis, const Held& held,
                                core::Problems* remarks) {
     const auto& axes = table.axes();
@@ -42,19 +63,7 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
         }
         if (!known) {
             const std::size_t k = axis_index(table, name);
-            if (k == free_axis) {
-                throw core::UsageError("axis", name + " cannot be held: it is what varies",
-                                       {table.source(), {}, {}, {}});
-            }
-            if (!std::isfinite(value)) {
-                throw core::UsageError("range", name + " is not finite", {table.source(), {}, {}, {}});
-            }
-            if (name == "gap" && value < 0 && axes[k].lower >= 0) {
-                throw core::UsageError("range",
-                                       "a gap of " + core::format_number(1e3 * value, 6) + " mm lies in the ground",
-                                       {table.source(), {}, {}, {}},
-                                       "the table begins at " + core::format_number(1e3 * axes[k].lower, 6) + " mm");
-            }
+            check_held(table, k, free_axis, value);
             point[k] = value;
         }
     }
@@ -243,13 +252,39 @@ std::vector<Line::Extreme> Line::extremes() const {
     return found;
 }
 
+namespace {
+
+/// Where a line may be zero or turn.
+struct Mark {
+    double x, value, slope;
+};
+
+/// Zeros at the marks themselves: knots and touching extrema; neighbours that are both zero make a stretch.
+void add_zeros_at(const std::vector<Mark>& marks, double tolerance, std::vector<Line::Zero>& crossings) {
+    for (std::size_t i = 0; i < marks.size();) {
+        if (sign_of(marks[i].value, tolerance) != 0) {
+            ++i;
+            continue;
+        }
+        std::size_t last = i;
+        while (last + 1 < marks.size() && sign_of(marks[last + 1].value, tolerance) == 0) {
+            ++last;
+        }
+        Line::Zero zero;
+        zero.x = 0.5 * (marks[i].x + marks[last].x);
+        zero.extent = marks[last].x - marks[i].x;
+        zero.slope = last > i ? 0 : marks[i].slope;
+        zero.before = i > 0 ? sign_of(marks[i - 1].value, tolerance) : 0;
+        zero.after = last + 1 < marks.size() ? sign_of(marks[last + 1].value, tolerance) : 0;
+        crossings.push_back(zero);
+        i = last + 1;
+    }
+}
+
+}  // namespace
+
 std::vector<Line::Zero> Line::zeros() const {
     const double tolerance = 1e-14 * size();
-    struct Mark {
-        double x;
-        double value;
-        double slope;
-    };
     std::vector<Mark> marks;
     std::vector<Zero> crossings;
     for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
@@ -276,25 +311,7 @@ std::vector<Line::Zero> Line::zeros() const {
         }
     }
     marks.push_back({x_.back(), value_.back(), slope_.back()});
-    // Zeros at the marks themselves: knots and touching extrema; neighbours that are both zero make a stretch.
-    for (std::size_t i = 0; i < marks.size();) {
-        if (sign_of(marks[i].value, tolerance) != 0) {
-            ++i;
-            continue;
-        }
-        std::size_t last = i;
-        while (last + 1 < marks.size() && sign_of(marks[last + 1].value, tolerance) == 0) {
-            ++last;
-        }
-        Zero zero;
-        zero.x = 0.5 * (marks[i].x + marks[last].x);
-        zero.extent = marks[last].x - marks[i].x;
-        zero.slope = last > i ? 0 : marks[i].slope;
-        zero.before = i > 0 ? sign_of(marks[i - 1].value, tolerance) : 0;
-        zero.after = last + 1 < marks.size() ? sign_of(marks[last + 1].value, tolerance) : 0;
-        crossings.push_back(zero);
-        i = last + 1;
-    }
+    add_zeros_at(marks, tolerance, crossings);
     std::sort(crossings.begin(), crossings.end(), [](const Zero& a, const Zero& b) { return a.x < b.x; });
     return crossings;
 }

@@ -96,13 +96,11 @@ std::vector<double> sums_of_products(const std::vector<std::vector<Number>>& fac
     return sums;
 }
 
-/// One draw from the posterior of a part at the nodes, in units of the force.
-std::vector<double> drawn_values(const ProcessPart& part, const ProcessMixture::Grid& grid, core::Random& random) {
+/// What is left of the values without a draw of the prior, solved for the weights of the kernel.
+std::vector<double> weights_beside(const ProcessPart& part, const RandomFunction& prior, std::size_t n,
+                                   core::Random& random) {
     const GpData& d = part.process.data();
     const GpParameters& p = part.process.parameters();
-    const Form& form = part.form;
-    const std::size_t n = grid.size();
-    const RandomFunction prior(part, random);
     std::vector<double> rest(d.count());
     for (std::size_t i = 0; i < d.count(); ++i) {
         double value = d.amplitude_of(i) * prior(p, &d.x[i * n], n);
@@ -111,7 +109,17 @@ std::vector<double> drawn_values(const ProcessPart& part, const ProcessMixture::
         }
         rest[i] = d.y[i] - value - std::sqrt(d.noise[i] + p.scatter * p.scatter) * random.normal();
     }
-    const auto weights = part.process.solved(std::move(rest));
+    return part.process.solved(std::move(rest));
+}
+
+/// One draw from the posterior of a part at the nodes, in units of the force.
+std::vector<double> drawn_values(const ProcessPart& part, const ProcessMixture::Grid& grid, core::Random& random) {
+    const GpData& d = part.process.data();
+    const GpParameters& p = part.process.parameters();
+    const Form& form = part.form;
+    const std::size_t n = grid.size();
+    const RandomFunction prior(part, random);
+    const auto weights = weights_beside(part, prior, n, random);
     std::vector<double> trend = prior.trend;
     for (std::size_t i = 0; i < d.count(); ++i) {
         for (std::size_t j = 0; j < d.trends; ++j) {

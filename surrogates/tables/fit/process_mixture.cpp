@@ -60,9 +60,9 @@ std::vector<double> knots_of(const SetPoints& points, const Form& form, double l
     return knots;
 }
 
-/// Exact Hermite data of the mean on a tensor grid: the kernel is a product over the axes, so each axis has its own
-/// matrices.
-std::vector<double> process_hermite(const GaussianProcess& process, const Form& form, const Grid& grid) {
+/// Kernel factors of each axis and their slopes: [axis][derivative][grid line * points + point].
+std::vector<std::array<std::vector<double>, 2>> kernel_factors(const GaussianProcess& process, const Form& form,
+                                                               const Grid& grid) {
     const GpData& d = process.data();
     const std::size_t n = grid.size();
     const std::size_t points = d.count();
@@ -85,10 +85,17 @@ std::vector<double> process_hermite(const GaussianProcess& process, const Form& 
             }
         }
     }
-    std::size_t count = 1;
-    for (const auto& axis : grid) {
-        count *= axis.size();
-    }
+    return part;
+}
+
+/// Exact Hermite data of the mean on a tensor grid: the kernel is a product over the axes, so each axis has its own
+/// matrices.
+std::vector<double> process_hermite(const GaussianProcess& process, const Form& form, const Grid& grid) {
+    const GpData& d = process.data();
+    const std::size_t n = grid.size();
+    const std::size_t points = d.count();
+    const auto part = kernel_factors(process, form, grid);
+    const std::size_t count = nodes_of(grid);
     const std::size_t width = std::size_t{1} << n;
     std::vector<double> hermite(count * width);
     // Products over all axes but the last are kept from node to node.

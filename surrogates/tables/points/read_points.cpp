@@ -17,6 +17,49 @@ namespace {
                            "a JSON table is one that an export with option 'format json' wrote");
 }
 
+/// What an export says of a table beside its values.
+nlohmann::json facts_of(const nlohmann::json& file, const nlohmann::json& own) {
+    const auto& axes = file.at("axes");
+    const std::string quantity = own.at("quantity");
+    nlohmann::json facts{{"underbody_table", 1},
+                         {"quantity", quantity},
+                         {"cell_error", own.at("cell_error")},
+                         {"growth", own.at("growth")}};
+    for (const char* kept : {"conditions", "hull", "support"}) {
+        if (file.contains(kept)) {
+            facts[kept] = file[kept];
+        }
+    }
+    for (const char* kept : {"warnings", "told"}) {
+        if (own.contains(kept)) {
+            facts[kept] = own[kept];
+        }
+    }
+    for (const auto& axis : axes) {
+        facts["axes"].push_back(axis.at("name"));
+        facts["range"].push_back(
+            axis.value("outside", file.value("outside", "clamp")));  // of older files: one word for all axes
+        if (axis.contains("lower") && axis.contains("upper")) {
+            facts["known"].push_back({axis["lower"], axis["upper"]});
+        }
+    }
+    return facts;
+}
+
+/// Column m of the derivatives: bit k says whether it is one along axis k.
+void add_derivative(core::Table& table, const std::string& quantity, const std::string& unit,
+                    const nlohmann::json& axes, std::size_t m, const std::vector<double>& values) {
+    std::string name = quantity + "_per";
+    std::string per = unit;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        if ((m >> k & 1) != 0) {
+            name += "_" + axes[k].at("name").get<std::string>();
+            per += " (" + axes[k].at("unit").get<std::string>() + ")^-1";
+        }
+    }
+    table.add_numbers(name, core::si_unit(per), values);
+}
+
 /// Columns and the line of facts of one quantity.
 void add_quantity(core::Table& table, const nlohmann::json& file, const nlohmann::json& own, std::size_t count,
                   const std::filesystem::path& path) {
@@ -44,41 +87,11 @@ void add_quantity(core::Table& table, const nlohmann::json& file, const nlohmann
         }
         sigma[node] = sigma[node] > 0 ? sigma[node] : std::nan("");
     }
-    nlohmann::json facts{{"underbody_table", 1},
-                         {"quantity", quantity},
-                         {"cell_error", own.at("cell_error")},
-                         {"growth", own.at("growth")}};
-    for (const char* kept : {"conditions", "hull", "support"}) {
-        if (file.contains(kept)) {
-            facts[kept] = file[kept];
-        }
-    }
-    for (const char* kept : {"warnings", "told"}) {
-        if (own.contains(kept)) {
-            facts[kept] = own[kept];
-        }
-    }
-    for (const auto& axis : axes) {
-        facts["axes"].push_back(axis.at("name"));
-        facts["range"].push_back(
-            axis.value("outside", file.value("outside", "clamp")));  // of older files: one word for all axes
-        if (axis.contains("lower") && axis.contains("upper")) {
-            facts["known"].push_back({axis["lower"], axis["upper"]});
-        }
-    }
-    table.comments.push_back(facts.dump());
+    table.comments.push_back(facts_of(file, own).dump());
     table.add_numbers(quantity, core::si_unit(unit), derivatives[0]);
     table.add_numbers(quantity + "_sigma", core::si_unit(unit), sigma);
     for (std::size_t m = 1; m < width; ++m) {
-        std::string name = quantity + "_per";
-        std::string per = unit;
-        for (std::size_t k = 0; k < n; ++k) {
-            if ((m >> k & 1) != 0) {
-                name += "_" + axes[k].at("name").get<std::string>();
-                per += " (" + axes[k].at("unit").get<std::string>() + ")^-1";
-            }
-        }
-        table.add_numbers(name, core::si_unit(per), derivatives[m]);
+        add_derivative(table, quantity, unit, axes, m, derivatives[m]);
     }
 }
 

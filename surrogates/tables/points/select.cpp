@@ -64,6 +64,39 @@ std::string_view unbraced(std::string_view text) {
     return text.starts_with('{') && text.ends_with('}') ? core::trimmed(text.substr(1, text.size() - 2)) : text;
 }
 
+/// column=value or column=a|b of a list of conditions; `before` are those that stand before it.
+Condition condition_of(std::string_view part, const core::Table& table, const std::vector<Condition>& before,
+                       const std::string& conditions) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) {
+        throw core::UsageError("parse", "'" + std::string(core::trimmed(part)) + "' is not of the form column=value");
+    }
+    const std::string name(core::trimmed(part.substr(0, equals)));
+    Condition condition{table.find(name), {}, {}};
+    if (condition.column != nullptr &&
+        std::any_of(before.begin(), before.end(), [&](const Condition& c) { return c.column == condition.column; })) {
+        throw core::UsageError("parse", "'" + name + "' is given twice: " + conditions, {table.source, {}, {}, {}},
+                               name + "=a|b takes either");
+    }
+    if (condition.column == nullptr) {
+        std::vector<std::string> names;
+        for (const auto& column : table.columns()) {
+            names.push_back(column.name);
+        }
+        throw core::UsageError("missing", "there is no column '" + name + "' to select by", {table.source, {}, {}, {}},
+                               core::did_you_mean(name, names));
+    }
+    for (const auto one : core::split(unquoted(part.substr(equals + 1)), '|')) {
+        const std::string_view value = unquoted(one);
+        if (condition.column->is_text()) {
+            condition.texts.emplace_back(core::trimmed(value));
+        } else {
+            condition.numbers.push_back(core::parse_in(value, condition.column->unit));
+        }
+    }
+    return condition;
+}
+
 }  // namespace
 
 core::Table selected_rows(const core::Table& table, const std::string& given) {
@@ -73,36 +106,7 @@ core::Table selected_rows(const core::Table& table, const std::string& given) {
     }
     std::vector<Condition> wanted;
     for (const auto part : core::split(conditions, ',')) {
-        const std::size_t equals = part.find('=');
-        if (equals == std::string_view::npos) {
-            throw core::UsageError("parse",
-                                   "'" + std::string(core::trimmed(part)) + "' is not of the form column=value");
-        }
-        const std::string name(core::trimmed(part.substr(0, equals)));
-        Condition condition{table.find(name), {}, {}};
-        if (condition.column != nullptr && std::any_of(wanted.begin(), wanted.end(), [&](const Condition& c) {
-                return c.column == condition.column;
-            })) {
-            throw core::UsageError("parse", "'" + name + "' is given twice: " + conditions, {table.source, {}, {}, {}},
-                                   name + "=a|b takes either");
-        }
-        if (condition.column == nullptr) {
-            std::vector<std::string> names;
-            for (const auto& column : table.columns()) {
-                names.push_back(column.name);
-            }
-            throw core::UsageError("missing", "there is no column '" + name + "' to select by",
-                                   {table.source, {}, {}, {}}, core::did_you_mean(name, names));
-        }
-        for (const auto one : core::split(unquoted(part.substr(equals + 1)), '|')) {
-            const std::string_view value = unquoted(one);
-            if (condition.column->is_text()) {
-                condition.texts.emplace_back(core::trimmed(value));
-            } else {
-                condition.numbers.push_back(core::parse_in(value, condition.column->unit));
-            }
-        }
-        wanted.push_back(std::move(condition));
+        wanted.push_back(condition_of(part, table, wanted, conditions));
     }
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < table.rows(); ++i) {

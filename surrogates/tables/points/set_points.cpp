@@ -25,6 +25,7 @@ using core::InputError;
 core::Problem note(std::string message, core::Place place = {}) {
     return {core::Problem::Severity::note, std::move(message), std::move(place)};
 }
+
 core::Problem warning(std::string message, core::Place place = {}) {
     return {core::Problem::Severity::warning, std::move(message), std::move(place)};
 }
@@ -139,6 +140,22 @@ void refuse_misnamed_axis(const core::Table& table) {
     }
 }
 
+[[noreturn]] void refuse_without_axis(const core::Table& table, const std::string& quantity,
+                                      const std::vector<std::string>& constant) {
+    std::string known;
+    for (const auto& name : constant) {
+        known += (known.empty() ? "" : ", ") + name;
+    }
+    std::string all;
+    for (const auto& column : table.columns()) {
+        all += (all.empty() ? "" : ", ") + column.name;
+    }
+    throw InputError("axis", "the table has no axis: no set-point column varies", {table.source, {}, {}, {}},
+                     !misnamed_columns(table, quantity).empty() ? misnamed_columns(table, quantity)
+                     : known.empty() ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s], and has " + all
+                                     : "these have one value throughout: " + known);
+}
+
 std::vector<std::string> found_axes(const core::Table& table, const std::string& quantity) {
     refuse_misnamed_axis(table);
     std::vector<std::string> axes;
@@ -160,19 +177,7 @@ std::vector<std::string> found_axes(const core::Table& table, const std::string&
         axes.push_back(name);
     }
     if (axes.empty()) {
-        std::string known;
-        for (const auto& name : constant) {
-            known += (known.empty() ? "" : ", ") + name;
-        }
-        std::string all;
-        for (const auto& column : table.columns()) {
-            all += (all.empty() ? "" : ", ") + column.name;
-        }
-        throw InputError("axis", "the table has no axis: no set-point column varies", {table.source, {}, {}, {}},
-                         !misnamed_columns(table, quantity).empty() ? misnamed_columns(table, quantity)
-                         : known.empty()
-                             ? "it needs a column such as gap [mm], pitch [deg] or speed [m/s], and has " + all
-                             : "these have one value throughout: " + known);
+        refuse_without_axis(table, quantity, constant);
     }
     if (axes.size() > max_axes) {
         std::string names;
@@ -244,6 +249,22 @@ void snap_axis(SetPoints& points, std::size_t k) {
     axis.upper = axis.points.back();
 }
 
+[[noreturn]] void refuse_repeat(const SetPoints& points, std::size_t a, std::size_t b) {
+    const bool errors = points.has_sigma();
+    throw InputError(
+        "duplicate",
+        "the set point " + describe(points.table, points.axes, points.x[a]) + " occurs twice with " + points.quantity +
+            " " + in_written_unit(points.table, points.quantity, points.value[a]) +
+            (points.table.line_of_row(a) > 0 ? " (line " + std::to_string(points.table.line_of_row(a)) + ")" : "") +
+            " and " + in_written_unit(points.table, points.quantity, points.value[b]),
+        points.table.place(b, points.quantity),
+        !misnamed_columns(points.table, points.quantity).empty() ? misnamed_columns(points.table, points.quantity)
+        : errors
+            ? "they differ by more than four times their errors: is a column missing that tells them "
+              "apart? Select rows"
+            : "select rows by a column that tells them apart, or state the error in '" + points.quantity + "_sigma'");
+}
+
 /// Repeats of a set point become one point: the mean weighted by 1/sigma^2. They must agree within their errors.
 void merge_repeats(SetPoints& points) {
     std::vector<std::size_t> order(points.x.size());
@@ -276,20 +297,7 @@ void merge_repeats(SetPoints& points) {
             const double difference = std::abs(points.value[a] - points.value[b]);
             const double allowed = errors ? 4 * std::hypot(points.sigma[a], points.sigma[b]) : same_point * size;
             if (difference > allowed) {
-                throw InputError(
-                    "duplicate",
-                    "the set point " + describe(points.table, points.axes, points.x[a]) + " occurs twice with " +
-                        points.quantity + " " + in_written_unit(points.table, points.quantity, points.value[a]) +
-                        (points.table.line_of_row(a) > 0 ? " (line " + std::to_string(points.table.line_of_row(a)) + ")"
-                                                         : "") +
-                        " and " + in_written_unit(points.table, points.quantity, points.value[b]),
-                    points.table.place(b, points.quantity),
-                    !misnamed_columns(points.table, points.quantity).empty()
-                        ? misnamed_columns(points.table, points.quantity)
-                    : errors ? "they differ by more than four times their errors: is a column missing that tells them "
-                               "apart? Select rows"
-                             : "select rows by a column that tells them apart, or state the error in '" +
-                                   points.quantity + "_sigma'");
+                refuse_repeat(points, a, b);
             }
             if (repeats++ == 0) {
                 first_repeat = points.table.place(b, points.quantity);
@@ -390,6 +398,22 @@ void check_policies(const RangePolicies& policies, const std::vector<std::string
     }
 }
 
+/// Axes and coordinates of the points.
+void take_axes(SetPoints& points, const std::vector<std::string>& names, const AxisOptions& options) {
+    points.x.assign(points.table.rows(), std::vector<double>(names.size()));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto& values = points.table.numbers(names[k]);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!std::isfinite(values[i])) {
+                throw InputError("missing", "axis '" + names[k] + "' has no value here",
+                                 points.table.place(i, names[k]));
+            }
+            points.x[i][k] = values[i];
+        }
+        points.axes.push_back({names[k], points.table.find(names[k])->unit, 0, 0, {}, options.range.of(names[k])});
+    }
+}
+
 }  // namespace
 
 SetPoints set_points(const core::Table& table, const std::string& quantity, const AxisOptions& options) {
@@ -418,18 +442,7 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
     for (auto& unsettled : unsettled_points(points.table)) {
         points.remarks.push_back(std::move(unsettled));
     }
-    points.x.assign(points.table.rows(), std::vector<double>(names.size()));
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const auto& values = points.table.numbers(names[k]);
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (!std::isfinite(values[i])) {
-                throw InputError("missing", "axis '" + names[k] + "' has no value here",
-                                 points.table.place(i, names[k]));
-            }
-            points.x[i][k] = values[i];
-        }
-        points.axes.push_back({names[k], points.table.find(names[k])->unit, 0, 0, {}, options.range.of(names[k])});
-    }
+    take_axes(points, names, options);
     points.value = points.table.numbers(quantity);
     read_sigma(points);
     for (std::size_t k = 0; k < names.size(); ++k) {

@@ -204,83 +204,94 @@ std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed
     return result;
 }
 
-std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64_t seed,
-                                                  core::Progress& progress) const {
-    const std::size_t axes = problem_.variables.size(), objectives = problem_.objectives.size();
-    const OnTheCube cube(*this, 0);
-    struct Point {
-        std::vector<double> u, f;
-    };
-    std::vector<Point> points;
-    const auto take = [&](std::vector<double> u) {
-        if (cube.violation(u) > 1e-6) {
-            return;
+namespace {
+
+/// A design on the unit cube, and its objectives.
+struct FrontPoint {
+    std::vector<double> u, f;
+};
+
+/// `q` is nowhere worse than `p` and somewhere better.
+bool dominates(const FrontPoint& q, const FrontPoint& p) {
+    bool better = false;
+    for (std::size_t k = 0; k < q.f.size(); ++k) {
+        if (q.f[k] > p.f[k]) {
+            return false;
         }
-        Point point{std::move(u), {}};
-        for (const Function& f : cube.objectives) {
-            point.f.push_back(f(point.u, {}));
-        }
-        points.push_back(std::move(point));
-    };
-    const auto keep_front = [&] {
-        const auto dominated = [&](const Point& p) {
-            return std::any_of(points.begin(), points.end(), [&](const Point& q) {
-                bool better = false;
-                for (std::size_t k = 0; k < objectives; ++k) {
-                    if (q.f[k] > p.f[k]) {
-                        return false;
-                    }
-                    better = better || q.f[k] < p.f[k];
-                }
-                return better;
-            });
-        };
-        std::vector<Point> front;
-        std::copy_if(points.begin(), points.end(), std::back_inserter(front),
-                     [&](const Point& p) { return !dominated(p); });
-        points = std::move(front);
-    };
-    for (const std::vector<double>& u : sobol_plan(std::min<std::size_t>(3000, 500 * axes), axes, seed)) {
-        take(u);
+        better = better || q.f[k] < p.f[k];
     }
-    keep_front();
-    // From points of the cloud's front, each as far as it goes toward the best of every objective at once.
-    std::vector<double> ideal(objectives, std::numeric_limits<double>::infinity());
-    std::vector<double> nadir(objectives, -std::numeric_limits<double>::infinity());
-    for (const Point& p : points) {
-        for (std::size_t k = 0; k < objectives; ++k) {
-            ideal[k] = std::min(ideal[k], p.f[k]);
-            nadir[k] = std::max(nadir[k], p.f[k]);
-        }
-    }
-    const std::vector<Point> cloud = points;
-    for (std::size_t i = 0; i < std::min<std::size_t>(cloud.size(), 2 * count); ++i) {
-        progress.check();
-        const Point& start = cloud[i * cloud.size() / std::min<std::size_t>(cloud.size(), 2 * count)];
-        // All other objectives no worse than here; the one in turn as small as it gets.
-        const std::size_t turn = i % objectives;
-        std::vector<Function> limits = cube.limits;
-        for (std::size_t k = 0; k < objectives; ++k) {
-            if (k != turn) {
-                limits.push_back([&cube, k, bound = start.f[k]](std::span<const double> u, std::span<double> slope) {
-                    return cube.objectives[k](u, slope) - bound;
-                });
-            }
-        }
-        take(polished(cube.objectives[turn], limits, start.u));
-    }
-    keep_front();
-    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.f.front() < b.f.front(); });
-    // Several starts end at one design.
-    const auto same = [](const Point& a, const Point& b) {
+    return better;
+}
+
+void keep_front(std::vector<FrontPoint>& points) {
+    std::vector<FrontPoint> front;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(front), [&](const FrontPoint& p) {
+        return std::none_of(points.begin(), points.end(), [&](const FrontPoint& q) { return dominates(q, p); });
+    });
+    points = std::move(front);
+}
+
+/// By the first objective; several starts end at one design, which is kept once.
+void sort_distinct(std::vector<FrontPoint>& points) {
+    std::sort(points.begin(), points.end(),
+              [](const FrontPoint& a, const FrontPoint& b) { return a.f.front() < b.f.front(); });
+    const auto same = [](const FrontPoint& a, const FrontPoint& b) {
         return std::equal(a.u.begin(), a.u.end(), b.u.begin(),
                           [](double u, double v) { return std::abs(u - v) < 1e-3; });
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto after = points.begin() + static_cast<std::ptrdiff_t>(i) + 1;
-        points.erase(std::remove_if(after, points.end(), [&, i](const Point& p) { return same(points[i], p); }),
+        points.erase(std::remove_if(after, points.end(), [&, i](const FrontPoint& p) { return same(points[i], p); }),
                      points.end());
     }
+}
+
+/// The limits, and that all objectives but the one in turn are no worse than at a start. The objectives must live
+/// longer.
+std::vector<Function> limits_from(const std::vector<Function>& objectives, std::vector<Function> limits,
+                                  const FrontPoint& start, std::size_t turn) {
+    for (std::size_t k = 0; k < objectives.size(); ++k) {
+        if (k != turn) {
+            limits.push_back([&f = objectives[k], bound = start.f[k]](
+                                 std::span<const double> u, std::span<double> slope) { return f(u, slope) - bound; });
+        }
+    }
+    return limits;
+}
+
+}  // namespace
+
+std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64_t seed,
+                                                  core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size(), objectives = problem_.objectives.size();
+    const OnTheCube cube(*this, 0);
+    std::vector<FrontPoint> points;
+    const auto take = [&](std::vector<double> u) {
+        if (cube.violation(u) > 1e-6) {
+            return;
+        }
+        FrontPoint point{std::move(u), {}};
+        for (const Function& f : cube.objectives) {
+            point.f.push_back(f(point.u, {}));
+        }
+        points.push_back(std::move(point));
+    };
+    for (const std::vector<double>& u : sobol_plan(std::min<std::size_t>(3000, 500 * axes), axes, seed)) {
+        take(u);
+    }
+    keep_front(points);
+    // From points of the front, each as far as it goes.
+    const std::vector<FrontPoint> cloud = points;
+    for (std::size_t i = 0; i < std::min<std::size_t>(cloud.size(), 2 * count); ++i) {
+        progress.check();
+        const FrontPoint& start = cloud[i * cloud.size() / std::min<std::size_t>(cloud.size(), 2 * count)];
+        // All other objectives no worse than here; the one in turn as small as it gets.
+        const std::size_t turn = i % objectives;
+        const std::vector<Function> limits = limits_from(cube.objectives, cube.limits, start, turn);
+        take(polished(cube.objectives[turn], limits, start.u));
+    }
+    keep_front(points);
+    sort_distinct(points);
     std::vector<Candidate> result;
     for (std::size_t i = 0; i < std::min(count, points.size()); ++i) {
         const std::size_t at = points.size() <= count || count < 2 ? i : i * (points.size() - 1) / (count - 1);

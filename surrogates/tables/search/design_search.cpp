@@ -97,6 +97,44 @@ DesignSearch::DesignSearch(SearchProblem problem, std::map<std::string, Surrogat
     }
 }
 
+namespace {
+
+std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    return at == names.end() ? none : static_cast<std::size_t>(at - names.begin());
+}
+
+/// The values that a response's conditions state; every other variable must be among those that are searched.
+std::vector<double> stated_point(const Response& response, const std::vector<std::string>& names,
+                                 const std::vector<std::size_t>& searched) {
+    std::vector<double> point(names.size(), 0.0);
+    std::vector<bool> given(names.size(), false);
+    for (const core::NamedValue& condition : response.conditions) {
+        const std::size_t i = index_of(names, condition.name);
+        if (i == none) {
+            throw core::InputError(
+                "condition", "\"" + response.name + "\" states " + condition.name + ", which the runs do not vary", {},
+                core::did_you_mean(condition.name, names));
+        }
+        point[i] = condition.value;
+        given[i] = true;
+    }
+    for (const std::size_t i : searched) {
+        if (i != none) {
+            given[i] = true;
+        }
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!given[i]) {
+            throw core::InputError("condition", "\"" + response.name + "\" does not say at which " + names[i], {},
+                                   "state it as a condition, or search it");
+        }
+    }
+    return point;
+}
+
+}  // namespace
+
 DesignSearch::Bound DesignSearch::bind(const Response& response) const {
     const auto found = surrogates_.find(response.quantity);
     if (found == surrogates_.end()) {
@@ -110,45 +148,20 @@ DesignSearch::Bound DesignSearch::bind(const Response& response) const {
     }
     Bound bound;
     bound.surrogate = &found->second;
-    const std::vector<SearchVariable>& all = bound.surrogate->variables();
     std::vector<std::string> names;
-    std::vector<double> point(all.size(), 0.0);
-    std::vector<bool> given(all.size(), false);
-    for (const SearchVariable& v : all) {
+    for (const SearchVariable& v : bound.surrogate->variables()) {
         names.push_back(v.name);
     }
-    const auto index = [&](const std::string& name) {
-        const auto at = std::find(names.begin(), names.end(), name);
-        return at == names.end() ? none : static_cast<std::size_t>(at - names.begin());
-    };
-    for (const core::NamedValue& condition : response.conditions) {
-        const std::size_t i = index(condition.name);
-        if (i == none) {
-            throw core::InputError(
-                "condition", "\"" + response.name + "\" states " + condition.name + ", which the runs do not vary", {},
-                core::did_you_mean(condition.name, names));
-        }
-        point[i] = condition.value;
-        given[i] = true;
-    }
     for (const SearchVariable& v : problem_.variables) {
-        bound.filled.push_back(index(v.name));
-        if (bound.filled.back() != none) {
-            given[bound.filled.back()] = true;
-        }
+        bound.filled.push_back(index_of(names, v.name));
     }
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (!given[i]) {
-            throw core::InputError("condition", "\"" + response.name + "\" does not say at which " + all[i].name, {},
-                                   "state it as a condition, or search it");
-        }
-    }
+    const std::vector<double> point = stated_point(response, names, bound.filled);
     if (response.slope_along.empty()) {
         bound.weights = {1};
         bound.points = {point};
         return bound;
     }
-    const std::size_t along = index(response.slope_along);
+    const std::size_t along = index_of(names, response.slope_along);
     if (along == none || !(response.half_width > 0)) {
         throw core::InputError("slope",
                                "\"" + response.name + "\" is a slope along " + response.slope_along +
@@ -316,13 +329,41 @@ DesignSearch DesignSearch::with_planned(const NextOptions& options) const {
     return search;
 }
 
+namespace {
+
+/// Climbs from a point of the cube to the nearest maximum of an acquisition.
+template <class Acquisition>
+void climb(const Acquisition& acquisition, const std::vector<double>& low, const std::vector<double>& high,
+           std::pair<double, std::vector<double>>& tried) {
+    const std::size_t axes = low.size();
+    nlopt::opt local(nlopt::LN_SBPLX, static_cast<unsigned>(axes));
+    local.set_lower_bounds(low);
+    local.set_upper_bounds(high);
+    local.set_maxeval(static_cast<int>(60 * axes));
+    local.set_xtol_abs(1e-5);
+    local.set_initial_step(0.03);
+    nlopt::func f = [](unsigned n, const double* u, double*, void* data) {
+        return (*static_cast<const Acquisition*>(data))(std::span<const double>(u, n));
+    };
+    local.set_max_objective(f, const_cast<void*>(static_cast<const void*>(&acquisition)));
+    double value = 0;
+    try {
+        local.optimize(tried.second, value);
+        tried.first = value;
+    } catch (const nlopt::roundoff_limited&) {
+        tried.first = acquisition(tried.second);
+    }
+}
+
+}  // namespace
+
 std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, core::Progress& progress) const {
     const std::size_t axes = problem_.variables.size();
     std::vector<Candidate> batch;
     DesignSearch search = with_planned(options);
     Taken taken(problem_.variables, options);
     std::vector<double> centre;
-    double best = best_of(options.solved);
+    const double best = best_of(options.solved);
     if (options.region && axes > trust_region_from && !std::isnan(best)) {
         for (const std::vector<double>& x : options.solved) {
             if (best_of({x}) == best) {
@@ -369,23 +410,7 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
             break;  // no further design meets the known limits
         }
         for (std::size_t i = 0; i < refined; ++i) {
-            nlopt::opt local(nlopt::LN_SBPLX, static_cast<unsigned>(axes));
-            local.set_lower_bounds(low);
-            local.set_upper_bounds(high);
-            local.set_maxeval(static_cast<int>(60 * axes));
-            local.set_xtol_abs(1e-5);
-            local.set_initial_step(0.03);
-            nlopt::func f = [](unsigned n, const double* u, double*, void* data) {
-                return (*static_cast<decltype(acquisition)*>(data))(std::span<const double>(u, n));
-            };
-            local.set_max_objective(f, const_cast<void*>(static_cast<const void*>(&acquisition)));
-            double value = 0;
-            try {
-                local.optimize(tried[i].second, value);
-                tried[i].first = value;
-            } catch (const nlopt::roundoff_limited&) {
-                tried[i].first = acquisition(tried[i].second);
-            }
+            climb(acquisition, low, high, tried[i]);
         }
         const auto chosen = std::max_element(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined),
                                              [](const auto& a, const auto& b) { return a.first < b.first; });

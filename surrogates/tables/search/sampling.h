@@ -23,7 +23,4 @@ Plan latin_hypercube(std::size_t count, std::size_t axes, std::uint64_t seed);
 /// Smallest distance of two points.
 double smallest_distance(const Plan& plan);
 
-/// Centred L2 discrepancy (Hickernell 1998): how unevenly the points fill the cube.
-double discrepancy(const Plan& plan);
-
 }  // namespace underbody::tables
