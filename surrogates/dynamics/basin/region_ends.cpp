@@ -29,8 +29,8 @@ constexpr double at_rest = 2e-3;       ///< swing over a well's width: less is r
 constexpr double shrinking = 0.9;      ///< ratio of the two swings: less goes to rest
 constexpr double steady_swing = 0.05;  ///< change of the swing: less is a cycle
 
-/// Everything that acts on the body at rest, against the gap, as one curve over [lower, upper].
-Curve static_curve(const HeavePlant& plant, double lower, double upper) {
+/// Ends, and the knots of the lift between them.
+std::vector<double> static_knots(const HeavePlant& plant, double lower, double upper) {
     std::vector<double> knots{lower, upper};
     if (!plant.lift_curve().empty()) {
         for (const double knot : plant.lift_curve().knots()) {
@@ -44,6 +44,39 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
     const double hair = 1e-8 * (upper - lower);
     knots.erase(std::unique(knots.begin(), knots.end(), [hair](double l, double r) { return r - l <= hair; }),
                 knots.end());
+    return knots;
+}
+
+/// Knots with values and slopes, gathered piece by piece from below.
+struct PiecewiseKnots {
+    std::vector<double> x, value, slope;
+
+    struct Knot {
+        double x, value, slope;
+    };
+    /// Two knots a hair apart stand where the slopes of two pieces differ: each piece keeps its own.
+    void add(const Knot& left, const Knot& right, double alike) {
+        if (!x.empty() && std::abs(slope.back() - left.slope) <= alike) {
+            x.pop_back();
+            value.pop_back();
+            slope.pop_back();
+            x.push_back(left.x);
+        } else if (!x.empty()) {
+            x.push_back(left.x + std::max(knot_apart * (right.x - left.x), rounding * std::abs(left.x)));
+        } else {
+            x.push_back(left.x);
+        }
+        value.push_back(left.value);
+        slope.push_back(left.slope);
+        x.push_back(right.x);
+        value.push_back(right.value);
+        slope.push_back(right.slope);
+    }
+};
+
+/// Everything that acts on the body at rest, against the gap, as one curve over [lower, upper].
+Curve static_curve(const HeavePlant& plant, double lower, double upper) {
+    const std::vector<double> knots = static_knots(plant, lower, upper);
     const double size = [&] {
         double largest = core::least_divisor;
         for (const double h : knots) {
@@ -51,7 +84,7 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
         }
         return largest;
     }();
-    std::vector<double> x, value, slope;
+    PiecewiseKnots curve;
     const auto f = [&](double h) { return plant.static_force(h); };
     // Slopes from inside the interval: exact for a cubic, and right on both sides of the kinks of a clamped table.
     const auto end_slope = [&](double end, double inner) {
@@ -73,29 +106,14 @@ Curve static_curve(const HeavePlant& plant, double lower, double upper) {
             self(self, (l + r) / 2, r, depth + 1);
             return;
         }
-        // Two knots a hair apart where the slopes of two pieces differ: each piece keeps its own.
-        if (!x.empty() && std::abs(slope.back() - sl) <= same_slope * (std::abs(sl) + size / (upper - lower))) {
-            x.pop_back();
-            value.pop_back();
-            slope.pop_back();
-            x.push_back(l);
-        } else if (!x.empty()) {
-            x.push_back(l + std::max(knot_apart * width, rounding * std::abs(l)));
-        } else {
-            x.push_back(l);
-        }
-        value.push_back(vl);
-        slope.push_back(sl);
-        x.push_back(r);
-        value.push_back(vr);
-        slope.push_back(sr);
+        curve.add({l, vl, sl}, {r, vr, sr}, same_slope * (std::abs(sl) + size / (upper - lower)));
     };
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
         if (knots[i + 1] - knots[i] > least_stretch * (upper - lower)) {
             refine(refine, knots[i], knots[i + 1], 0);
         }
     }
-    return {std::move(x), std::move(value), std::move(slope)};
+    return {std::move(curve.x), std::move(curve.value), std::move(curve.slope)};
 }
 
 /// A stable equilibrium between two rims.

@@ -120,6 +120,32 @@ bool over_gap_and_pitch(const StabilityRegion& region) {
     return (x == "gap" && y == "pitch") || (x == "pitch" && y == "gap");
 }
 
+/// Lines where a force table ends within the map.
+void add_table_ends(core::Figure& figure, const StabilityRegion& region) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const core::NamedRange& range = region.axes[axis];
+        const bool gap = range.name == "gap";
+        for (const double edge :
+             {gap ? region.table_lower : region.pitch_lower, gap ? region.table_upper : region.pitch_upper}) {
+            if ((gap || range.name == "pitch") && edge > range.lower && edge < range.upper) {
+                figure.lines.push_back({axis == 0, edge * shown(range.name).scale, "end of the force table"});
+            }
+        }
+    }
+}
+
+std::string caption_of(const StabilityRegion& region) {
+    return std::to_string(region.columns) + " x " + std::to_string(region.rows) + " starts, " +
+           core::format_number(region.duration, 4) + " s of motion each; " + region.rule + ". Contact at " +
+           core::format_number(1e3 * region.contact_gap, 4) + " mm, escape above " +
+           core::format_number(1e3 * region.escape_gap, 5) + " mm." +
+           (over_gap_and_pitch(region) ? " Arrows: where a start at rest sets off." : "") +
+           (region.outside_fraction > 0 ? " Beyond the dashed line the force table holds its end value." : "") +
+           (region.path_outside_fraction > 0
+                ? " " + percent(region.path_outside_fraction) + " of the motions are beyond a force table at some time."
+                : "");
+}
+
 }  // namespace
 
 core::Figure region_figure(const StabilityRegion& region) {
@@ -157,27 +183,9 @@ core::Figure region_figure(const StabilityRegion& region) {
             figure.curves.push_back(std::move(curve));
         }
     }
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        const core::NamedRange& range = region.axes[axis];
-        const bool gap = range.name == "gap";
-        for (const double edge :
-             {gap ? region.table_lower : region.pitch_lower, gap ? region.table_upper : region.pitch_upper}) {
-            if ((gap || range.name == "pitch") && edge > range.lower && edge < range.upper) {
-                figure.lines.push_back({axis == 0, edge * shown(range.name).scale, "end of the force table"});
-            }
-        }
-    }
+    add_table_ends(figure, region);
     add_equilibria(figure, region);
-    figure.caption =
-        std::to_string(region.columns) + " x " + std::to_string(region.rows) + " starts, " +
-        core::format_number(region.duration, 4) + " s of motion each; " + region.rule + ". Contact at " +
-        core::format_number(1e3 * region.contact_gap, 4) + " mm, escape above " +
-        core::format_number(1e3 * region.escape_gap, 5) + " mm." +
-        (over_gap_and_pitch(region) ? " Arrows: where a start at rest sets off." : "") +
-        (region.outside_fraction > 0 ? " Beyond the dashed line the force table holds its end value." : "") +
-        (region.path_outside_fraction > 0
-             ? " " + percent(region.path_outside_fraction) + " of the motions are beyond a force table at some time."
-             : "");
+    figure.caption = caption_of(region);
     return figure;
 }
 

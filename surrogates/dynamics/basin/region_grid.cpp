@@ -110,6 +110,27 @@ std::vector<End> region_grid(const RegionOptions& o, const RegionBatch& batch, c
 
 namespace {
 
+/// Starts of a finer grid within cells.
+struct FineStarts {
+    std::vector<double> x, y;
+};
+
+FineStarts fine_starts(const RegionOptions& o, const std::vector<std::size_t>& edge, std::size_t fine,
+                       const core::Progress& progress) {
+    const std::size_t columns = o.columns;
+    std::vector<double> x(edge.size() * fine * fine), y(x.size());
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+        if (k % 4096 == 0) {
+            progress.check();
+        }
+        for (std::size_t f = 0; f < fine * fine; ++f) {
+            x[k * fine * fine + f] = in_cell(o, 0, edge[k] % columns, (static_cast<double>(f % fine) + 0.5) / fine);
+            y[k * fine * fine + f] = in_cell(o, 1, edge[k] / columns, (static_cast<double>(f / fine) + 0.5) / fine);
+        }
+    }
+    return {std::move(x), std::move(y)};
+}
+
 /// Fractions of the area: cells beside another class count by a finer grid of starts within them. The second list:
 /// of those whose motion leaves the range of a force table.
 std::array<std::vector<double>, 2> region_fractions(const RegionOptions& o, const RegionBatch& batch,
@@ -137,18 +158,9 @@ std::array<std::vector<double>, 2> region_fractions(const RegionOptions& o, cons
             }
         }
     }
-    std::vector<double> x(edge.size() * fine * fine), y(x.size());
-    for (std::size_t k = 0; k < edge.size(); ++k) {
-        if (k % 4096 == 0) {
-            progress.check();
-        }
-        for (std::size_t f = 0; f < fine * fine; ++f) {
-            x[k * fine * fine + f] = in_cell(o, 0, edge[k] % columns, (static_cast<double>(f % fine) + 0.5) / fine);
-            y[k * fine * fine + f] = in_cell(o, 1, edge[k] / columns, (static_cast<double>(f / fine) + 0.5) / fine);
-        }
-    }
-    std::vector<End> refined(x.size());
-    batch(x, y, refined);
+    const FineStarts starts = fine_starts(o, edge, fine, progress);
+    std::vector<End> refined(starts.x.size());
+    batch(starts.x, starts.y, refined);
     for (std::size_t k = 0; k < refined.size(); ++k) {
         const std::size_t cell = edge[k / (fine * fine)], f = k % (fine * fine);
         count(refined[k],
@@ -228,14 +240,15 @@ void bisect(std::vector<Crossing>& crossings, const RegionOptions& o, const Regi
     }
 }
 
-}  // namespace
+/// Crossings between neighbouring starts, and which of them belongs to each: number 2 s is that of start s toward the
+/// next column, 2 s + 1 toward the next row; -1 where both starts end alike.
+struct Crossings {
+    std::vector<Crossing> list;
+    std::vector<std::ptrdiff_t> of;
+};
 
-void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
-                           const std::vector<End>& ends, const core::Progress& progress) {
+Crossings crossings_between(const RegionOptions& o, const std::vector<End>& ends, const core::Progress& progress) {
     const std::size_t columns = o.columns, rows = o.rows;
-    const auto x_of = [&](std::size_t k) { return in_cell(o, 0, k % columns, 0.5); };
-    const auto y_of = [&](std::size_t k) { return in_cell(o, 1, k / columns, 0.5); };
-    // Crossing k of start s: 2 s toward the next column, 2 s + 1 toward the next row.
     std::vector<Crossing> crossings;
     std::vector<std::ptrdiff_t> of;
     of.reserve(2 * columns * rows);
@@ -253,6 +266,41 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, cons
             }
         }
     }
+    return {std::move(crossings), std::move(of)};
+}
+
+/// Adds the lines of one cell: between two crossings, or from each of several to their mean.
+void add_lines(RegionBoundary& line, const std::vector<std::array<double, 2>>& points) {
+    std::array<double, 2> middle{};
+    for (const std::array<double, 2>& p : points) {
+        middle[0] += p[0] / static_cast<double>(points.size());
+        middle[1] += p[1] / static_cast<double>(points.size());
+    }
+    const auto segment = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
+        for (const double v : {a[0], b[0], std::nan("")}) {
+            line.x.push_back(v);
+        }
+        for (const double v : {a[1], b[1], std::nan("")}) {
+            line.y.push_back(v);
+        }
+    };
+    if (points.size() == 2) {
+        segment(points[0], points[1]);
+    } else {
+        for (const std::array<double, 2>& p : points) {
+            segment(p, middle);
+        }
+    }
+}
+
+}  // namespace
+
+void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, const RegionBatch& batch,
+                           const std::vector<End>& ends, const core::Progress& progress) {
+    const std::size_t columns = o.columns, rows = o.rows;
+    const auto x_of = [&](std::size_t k) { return in_cell(o, 0, k % columns, 0.5); };
+    const auto y_of = [&](std::size_t k) { return in_cell(o, 1, k / columns, 0.5); };
+    auto [crossings, of] = crossings_between(o, ends, progress);
     bisect(crossings, o, batch, ends, x_of, y_of);
     RegionBoundary line;
     line.name = "between classes";
@@ -272,26 +320,7 @@ void add_traced_boundaries(StabilityRegion& region, const RegionOptions& o, cons
             if (points.size() < 2) {
                 continue;
             }
-            std::array<double, 2> middle{};
-            for (const std::array<double, 2>& p : points) {
-                middle[0] += p[0] / static_cast<double>(points.size());
-                middle[1] += p[1] / static_cast<double>(points.size());
-            }
-            const auto segment = [&](const std::array<double, 2>& a, const std::array<double, 2>& b) {
-                for (const double v : {a[0], b[0], std::nan("")}) {
-                    line.x.push_back(v);
-                }
-                for (const double v : {a[1], b[1], std::nan("")}) {
-                    line.y.push_back(v);
-                }
-            };
-            if (points.size() == 2) {
-                segment(points[0], points[1]);
-            } else {
-                for (const std::array<double, 2>& p : points) {
-                    segment(p, middle);
-                }
-            }
+            add_lines(line, points);
         }
     }
     if (!line.x.empty()) {

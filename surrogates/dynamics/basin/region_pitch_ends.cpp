@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/no_limit.h"
 #include "core/random.h"
@@ -25,6 +26,66 @@ constexpr double chattering = 1e-3;                 ///< of the size of speeds, 
 
 }  // namespace
 
+/// Directions on the unit sphere of the capture's form.
+std::vector<PitchState> PitchEnds::directions_of(const Capture& capture) const {
+    core::Random random(11);
+    std::vector<PitchState> directions;
+    for (int k = 0; k < 1500; ++k) {
+        PitchState d{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            d[i] = random.normal() * sizes_[i];
+        }
+        PitchState at{capture.gap + d[0], d[1], capture.pitch + d[2], d[3]};
+        const double norm = std::sqrt(capture.value(at));
+        for (double& part : d) {
+            part /= norm;
+        }
+        directions.push_back(d);
+    }
+    return directions;
+}
+
+/// Whether the capture's form falls along the motion everywhere on a shell, checked along the directions.
+bool PitchEnds::falls(const Capture& capture, const std::vector<PitchState>& directions, double radius) const {
+    return std::all_of(directions.begin(), directions.end(), [&](const PitchState& d) {
+        const PitchState y{capture.gap + radius * d[0], radius * d[1], capture.pitch + radius * d[2], radius * d[3]};
+        const std::array<double, 2> gaps = plant_.edge_gaps(y);
+        if (std::min(gaps[0], gaps[1]) <= 0 || y[0] >= escape_) {
+            return false;
+        }
+        PitchState rate{};
+        plant_.rate(y, ContactState::free, rate);
+        const double x[4] = {y[0] - capture.gap, y[1], y[2] - capture.pitch, y[3]};
+        double growth = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = 0; j < 4; ++j) {
+                growth += 2 * x[i] * capture.p(i, j) * rate[j];
+            }
+        }
+        return growth < 0;
+    });
+}
+
+/// Level of the capture's form: it grows until the form rises somewhere on its shell.
+void PitchEnds::hold(Capture& capture, const Matrix& a) const {
+    Matrix weights(4, 4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        weights(i, i) = 1 / (sizes_[i] * sizes_[i]);
+    }
+    capture.p = lyapunov(a, weights);
+    const std::vector<PitchState> directions = directions_of(capture);
+    double radius = first_radius;
+    while (radius < 1e6 && falls(capture, directions, radius)) {
+        radius *= radius_ratio;
+    }
+    radius /= radius_ratio * radius_margin;  // a margin, since shells are checked at points only
+    capture.holds = radius > 2 * first_radius;
+    capture.level = radius * radius;
+    const Matrix reach = inverse(capture.p);
+    capture.gap_reach = std::sqrt(reach(0, 0));
+    capture.pitch_reach = std::sqrt(reach(2, 2));
+}
+
 void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
     Capture capture;
     capture.class_index = classes_.size();
@@ -38,56 +99,7 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
     }
     const HeaveTerms& terms = plant_.vertical().terms;
     if (worst < -settling && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
-        Matrix weights(4, 4);
-        for (std::size_t i = 0; i < 4; ++i) {
-            weights(i, i) = 1 / (sizes_[i] * sizes_[i]);
-        }
-        capture.p = lyapunov(system.a, weights);
-        // Directions on the unit sphere of P; the level grows until the value rises somewhere on its shell.
-        core::Random random(11);
-        std::vector<PitchState> directions;
-        for (int k = 0; k < 1500; ++k) {
-            PitchState d{};
-            for (std::size_t i = 0; i < 4; ++i) {
-                d[i] = random.normal() * sizes_[i];
-            }
-            PitchState at{capture.gap + d[0], d[1], capture.pitch + d[2], d[3]};
-            const double norm = std::sqrt(capture.value(at));
-            for (double& part : d) {
-                part /= norm;
-            }
-            directions.push_back(d);
-        }
-        const auto falls = [&](double radius) {
-            return std::all_of(directions.begin(), directions.end(), [&](const PitchState& d) {
-                const PitchState y{capture.gap + radius * d[0], radius * d[1], capture.pitch + radius * d[2],
-                                   radius * d[3]};
-                const std::array<double, 2> gaps = plant_.edge_gaps(y);
-                if (std::min(gaps[0], gaps[1]) <= 0 || y[0] >= escape_) {
-                    return false;
-                }
-                PitchState rate{};
-                plant_.rate(y, ContactState::free, rate);
-                const double x[4] = {y[0] - capture.gap, y[1], y[2] - capture.pitch, y[3]};
-                double growth = 0;
-                for (std::size_t i = 0; i < 4; ++i) {
-                    for (std::size_t j = 0; j < 4; ++j) {
-                        growth += 2 * x[i] * capture.p(i, j) * rate[j];
-                    }
-                }
-                return growth < 0;
-            });
-        };
-        double radius = first_radius;
-        while (radius < 1e6 && falls(radius)) {
-            radius *= radius_ratio;
-        }
-        radius /= radius_ratio * radius_margin;  // a margin, since shells are checked at points only
-        capture.holds = radius > 2 * first_radius;
-        capture.level = radius * radius;
-        const Matrix reach = inverse(capture.p);
-        capture.gap_reach = std::sqrt(reach(0, 0));
-        capture.pitch_reach = std::sqrt(reach(2, 2));
+        hold(capture, system.a);
     }
     captures_.push_back(std::move(capture));
 }
@@ -189,110 +201,143 @@ double first_negative(const Value& value) {
 
 }  // namespace
 
+/// A motion on its way: where it is, what bears it, and what it has come to so far.
+template <bool Memory, bool Loop>
+struct PitchEnds::Course {
+    using Law = Rate<Memory, Loop>;
+    static constexpr std::size_t size = Law::size;
+    using State = std::array<double, size>;
+
+    const PitchEnds& judge;
+    State y, scale;
+    double t = 0;
+    ContactState bearing = ContactState::free;
+    int changes = 0;
+    End held;  ///< an attractor's set may be wider than the tables
+    Extent third{}, fourth{};
+
+    Course(const PitchEnds& ends, const PitchState& start, LoopActuator<4>& actuator)
+        : judge(ends), held{-1, 0, ends.outside(start[0], start[2])} {
+        y.fill(-judge.plant_.centre_velocity(start));
+        scale.fill(judge.options_.tolerance * 10 * judge.sizes_[1]);
+        std::copy(start.begin(), start.end(), y.begin());
+        for (std::size_t i = 0; i < 4; ++i) {
+            scale[i] = judge.options_.tolerance * 10 * judge.sizes_[i];
+        }
+        if constexpr (Loop) {
+            const double still[4] = {};
+            actuator.start(0, y.data(), still);
+            y[size - 1] = actuator.driven(0, y.data());
+            scale[size - 1] *= judge.plant_.mass();  // a force that changes the velocity so much within a second
+            State begin{};
+            Law{&judge.plant_, &actuator, ContactState::free}(0, y.data(), begin.data());
+            actuator.accept(0, y.data(), begin.data());
+        }
+    }
+
+    [[nodiscard]] static PitchState motion(const State& y) { return {y[0], y[1], y[2], y[3]}; }
+    [[nodiscard]] End ended(int index) const { return held.index >= 0 ? held : End{index, t, held.outside}; }
+
+    /// A gap has closed or a bearing force has vanished at `hit`: the motion goes on with another contact, or ends.
+    std::optional<End> touch(const State& hit, const Law& rate) {
+        y = hit;
+        held.outside = held.outside || judge.outside(y[0], y[2]);
+        if (!judge.options_.through_contact) {
+            return ended(judge.contact_class());
+        }
+        PitchState landed = motion(y);
+        try {
+            land(judge.plant_, landed, bearing, rate.around(t, y.data()));
+        } catch (const core::Error&) {
+            return ended(judge.undecided_class());
+        }
+        std::copy(landed.begin(), landed.end(), y.begin());
+        if (judge.rests(landed, bearing)) {
+            return ended(judge.contact_class());
+        }
+        if (++changes > 2000) {
+            const bool slow = std::abs(y[1]) < chattering * judge.sizes_[1];
+            return ended(slow ? judge.contact_class() : judge.undecided_class());
+        }
+        return std::nullopt;
+    }
+
+    /// The end of the motion when it is decided by where it is now.
+    std::optional<End> arrived() {
+        if (y[0] >= judge.escape_) {
+            return ended(judge.escape_class());
+        }
+        if (bearing == ContactState::free) {
+            const int index = judge.captured(motion(y));
+            if (held.index < 0 && index >= 0) {
+                held = {index, t, held.outside};
+            }
+            if (held.index >= 0 &&
+                (held.outside || judge.within_tables(motion(y), static_cast<std::size_t>(held.index)))) {
+                return held;
+            }
+        } else if (judge.rests(motion(y), bearing)) {
+            return ended(judge.contact_class());
+        }
+        if (t > 0.5 * judge.options_.duration) {
+            (t > (1 - quarter) * judge.options_.duration ? fourth : third).take(motion(y));
+        }
+        return std::nullopt;
+    }
+};
+
 template <bool Memory, bool Loop>
 End PitchEnds::go(const PitchState& start) const {
-    using Law = Rate<Memory, Loop>;
-    constexpr std::size_t N = Law::size;
-    using State = std::array<double, N>;
-    const auto motion = [](const State& y) { return PitchState{y[0], y[1], y[2], y[3]}; };
+    using Path = Course<Memory, Loop>;
+    using State = typename Path::State;
     LoopActuator<4> actuator(plant_.vertical().terms, [this](double, const double* y) {
         return plant_.vertical().held_input() + plant_.force_command({y[0], y[1], y[2], y[3]});
     });
-    State y, scale;
-    y.fill(-plant_.centre_velocity(start));
-    scale.fill(options_.tolerance * 10 * sizes_[1]);
-    std::copy(start.begin(), start.end(), y.begin());
-    for (std::size_t i = 0; i < 4; ++i) {
-        scale[i] = options_.tolerance * 10 * sizes_[i];
-    }
-    if constexpr (Loop) {
-        const double still[4] = {};
-        actuator.start(0, y.data(), still);
-        y[N - 1] = actuator.driven(0, y.data());
-        scale[N - 1] *= plant_.mass();  // a force that changes the velocity so much within a second
-        State begin{};
-        Law{&plant_, &actuator, ContactState::free}(0, y.data(), begin.data());
-        actuator.accept(0, y.data(), begin.data());
-    }
+    Path path(*this, start, actuator);
     const double look_back = Loop && actuator.delayed() ? actuator.max_step() : core::no_limit;
-    ContactState bearing = ContactState::free;
-    double t = 0;
-    Extent third, fourth;
-    int changes = 0;
-    End held{-1, 0, outside(start[0], start[2])};  // an attractor's set may be wider than the tables
-    const auto ends = [&](int index, double when) { return held.index >= 0 ? held : End{index, when, held.outside}; };
-    while (t < options_.duration) {
-        const Law rate{&plant_, &actuator, bearing};
-        DormandPrince<N, Law> ode(rate, t, y, scale, first_motion_step);
+    while (path.t < options_.duration) {
+        const typename Path::Law rate{&plant_, &actuator, path.bearing};
+        DormandPrince<Path::size, typename Path::Law> ode(rate, path.t, path.y, path.scale, first_motion_step);
         bool changed = false;
-        while (!changed && t < options_.duration) {
-            if (!ode.step(std::min(options_.duration, ode.t() + look_back)) || ode.tries() > 400000) {
-                return ends(undecided_class(), ode.t());
+        while (!changed && path.t < options_.duration) {
+            const bool stepped = ode.step(std::min(options_.duration, ode.t() + look_back));
+            path.t = ode.t();
+            if (!stepped || ode.tries() > 400000) {
+                return path.ended(undecided_class());
             }
             if constexpr (Loop) {
                 actuator.accept(ode.t(), ode.y().data(), ode.rate().data());
             }
-            t = ode.t();
-            y = ode.y();
-            const double before = ode.before_t(), width = t - before;
+            path.y = ode.y();
+            const double before = ode.before_t(), width = path.t - before;
             const auto between = [&](double part) {
                 State inside;
-                for (std::size_t i = 0; i < N; ++i) {
+                for (std::size_t i = 0; i < Path::size; ++i) {
                     inside[i] = ode.between(part, i);
                 }
                 return inside;
             };
-            const auto value = [&](double part) {
-                const State at = part == 1.0 ? y : between(part);
-                return margin(motion(at), bearing, rate.around(before + part * width, at.data()));
-            };
-            // A gap that closes or a bearing force that vanishes.
-            const double hit = first_negative(value);
-            if (hit > 0) {
-                t = before + hit * width;
-                held.outside = held.outside || outside(between(hit)[0], between(hit)[2]);
-                if (!options_.through_contact) {
-                    return ends(contact_class(), t);
+            const double hit = first_negative([&](double part) {
+                const State at = part == 1.0 ? path.y : between(part);
+                return margin(Path::motion(at), path.bearing, rate.around(before + part * width, at.data()));
+            });
+            changed = hit > 0;
+            if (changed) {
+                path.t = before + hit * width;
+                if (const std::optional<End> end = path.touch(between(hit), rate)) {
+                    return *end;
                 }
-                y = between(hit);
-                PitchState landed = motion(y);
-                try {
-                    land(plant_, landed, bearing, rate.around(t, y.data()));
-                } catch (const core::Error&) {
-                    return ends(undecided_class(), t);
-                }
-                std::copy(landed.begin(), landed.end(), y.begin());
-                if (rests(landed, bearing)) {
-                    return ends(contact_class(), t);
-                }
-                if (++changes > 2000) {
-                    return ends(std::abs(y[1]) < chattering * sizes_[1] ? contact_class() : undecided_class(), t);
-                }
-                changed = true;
             } else {  // beyond the escape gap the step went on, the motion did not
-                held.outside = held.outside || (y[0] >= escape_ ? outside(escape_, y[2]) : leaves_tables(ode));
+                const bool left = path.y[0] >= escape_ ? outside(escape_, path.y[2]) : leaves_tables(ode);
+                path.held.outside = path.held.outside || left;
             }
-            if (y[0] >= escape_) {
-                return ends(escape_class(), t);
-            }
-            if (bearing == ContactState::free) {
-                const int index = captured(motion(y));
-                if (held.index < 0 && index >= 0) {
-                    held = {index, t, held.outside};
-                }
-                if (held.index >= 0 &&
-                    (held.outside || within_tables(motion(y), static_cast<std::size_t>(held.index)))) {
-                    return held;
-                }
-            } else if (rests(motion(y), bearing)) {
-                return ends(contact_class(), t);
-            }
-            if (t > 0.5 * options_.duration) {
-                (t > (1 - quarter) * options_.duration ? fourth : third).take(motion(y));
+            if (const std::optional<End> end = path.arrived()) {
+                return *end;
             }
         }
     }
-    return ends(bearing == ContactState::free ? settled(third, fourth).index : contact_class(), options_.duration);
+    path.t = options_.duration;
+    return path.ended(path.bearing == ContactState::free ? settled(path.third, path.fourth).index : contact_class());
 }
 
 }  // namespace underbody::dynamics

@@ -64,6 +64,9 @@ private:
     [[nodiscard]] int undecided_class() const { return static_cast<int>(classes_.size()) - 1; }
 
     void add_attractor(const HeaveEquilibrium& e);
+    void hold(Capture& capture, const Matrix& a) const;
+    [[nodiscard]] std::vector<PitchState> directions_of(const Capture& capture) const;
+    [[nodiscard]] bool falls(const Capture& capture, const std::vector<PitchState>& directions, double radius) const;
     /// The set that holds this state, or -1; sets stand in the order of the attractors' classes.
     [[nodiscard]] int captured(const PitchState& y) const {
         for (const Capture& capture : captures_) {
@@ -109,6 +112,8 @@ private:
             return now;
         }
     };
+    template <bool Memory, bool Loop>
+    struct Course;
     template <bool Memory, bool Loop>
     [[nodiscard]] End go(const PitchState& start) const;
 

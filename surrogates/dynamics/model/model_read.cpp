@@ -124,6 +124,29 @@ std::optional<tables::ForceTable> exported_table(const core::Table& points, cons
     return table;
 }
 
+/// Each axis of a table must be a state or a condition.
+void take_axes(ForceSource& source, const core::TomlTable& table) {
+    for (const tables::TableAxis& axis : source.table.axes()) {
+        Channel channel{};
+        if (!find_channel(axis.name, channel)) {
+            throw core::InputError(
+                "name", "axis '" + axis.name + "' of " + source.table_file + " is not a state or a condition",
+                table.place("table"), core::did_you_mean(axis.name, channel_names()));
+        }
+        source.axes.push_back(channel);
+    }
+}
+
+void take_scales(ForceSource& source, const core::TomlTable& scales) {
+    for (const std::string& name : scales.keys()) {
+        source.scales.push_back(read_scale(scales, name));
+        if (std::find(source.axes.begin(), source.axes.end(), source.scales.back().channel) != source.axes.end()) {
+            throw core::InputError("range", "scale." + name + ": the table already has " + name + " as an axis",
+                                   scales.place(name), "leave one of the two out, or name the axes: axes = [\"gap\"]");
+        }
+    }
+}
+
 ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
     const std::string quantity = table.choice(
         "quantity", {"lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment"});
@@ -160,23 +183,8 @@ ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
             remarks.push_back(remark);
         }
     }
-    for (const tables::TableAxis& axis : source.table.axes()) {
-        Channel channel{};
-        if (!find_channel(axis.name, channel)) {
-            throw core::InputError(
-                "name", "axis '" + axis.name + "' of " + source.table_file + " is not a state or a condition",
-                table.place("table"), core::did_you_mean(axis.name, channel_names()));
-        }
-        source.axes.push_back(channel);
-    }
-    const core::TomlTable scales = table.table_or_empty("scale");
-    for (const std::string& name : scales.keys()) {
-        source.scales.push_back(read_scale(scales, name));
-        if (std::find(source.axes.begin(), source.axes.end(), source.scales.back().channel) != source.axes.end()) {
-            throw core::InputError("range", "scale." + name + ": the table already has " + name + " as an axis",
-                                   scales.place(name), "leave one of the two out, or name the axes: axes = [\"gap\"]");
-        }
-    }
+    take_axes(source, table);
+    take_scales(source, table.table_or_empty("scale"));
     return source;
 }
 

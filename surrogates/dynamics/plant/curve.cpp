@@ -146,31 +146,60 @@ Curve Curve::plus(double a, const Curve& other, double b) const {
     return {std::move(x), std::move(value), std::move(slope)};
 }
 
+namespace {
+
+/// Where a cubic piece c0 + c1 d + c2 d^2 + c3 d^3 turns, with its ends: it is monotone between these.
+std::vector<double> monotone_cuts(double c1, double c2, double c3, double width) {
+    std::vector<double> cuts{0.0, width};
+    const double a = 3 * c3, b = 2 * c2, c = c1;
+    const double discriminant = b * b - 4 * a * c;
+    if (a != 0 && discriminant > 0) {
+        for (const double sign : {-1.0, 1.0}) {
+            const double root = (-b + sign * std::sqrt(discriminant)) / (2 * a);
+            if (root > 0 && root < width) {
+                cuts.push_back(root);
+            }
+        }
+    } else if (a == 0 && b != 0 && -c / b > 0 && -c / b < width) {
+        cuts.push_back(-c / b);
+    }
+    std::sort(cuts.begin(), cuts.end());
+    return cuts;
+}
+
+/// The last zero from `lo`, where f is not zero, to `hi`, where it has the other sign or is zero.
+template <class Function>
+double bisected(const Function& f, double lo, double hi) {
+    double flo = f(lo);
+    for (int step = 0; step < 200 && hi - lo > 0; ++step) {
+        const double middle = (lo + hi) / 2;
+        if (middle == lo || middle == hi) {
+            break;
+        }
+        const double fm = f(middle);
+        if ((fm > 0) == (flo > 0) && fm != 0) {
+            lo = middle;
+            flo = fm;
+        } else {
+            hi = middle;
+        }
+    }
+    return hi;
+}
+
+}  // namespace
+
 std::vector<double> Curve::zeros(double level) const {
     std::vector<double> found;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         // A cubic piece: cut at its turning points, then bisect each monotone part.
         const Piece& p = pieces_[i];
         const double width = x_[i + 1] - x_[i];
-        std::vector<double> cuts{0.0, width};
-        const double a = 3 * p.c3, b = 2 * p.c2, c = p.c1;
-        const double discriminant = b * b - 4 * a * c;
-        if (a != 0 && discriminant > 0) {
-            for (const double sign : {-1.0, 1.0}) {
-                const double root = (-b + sign * std::sqrt(discriminant)) / (2 * a);
-                if (root > 0 && root < width) {
-                    cuts.push_back(root);
-                }
-            }
-        } else if (a == 0 && b != 0 && -c / b > 0 && -c / b < width) {
-            cuts.push_back(-c / b);
-        }
-        std::sort(cuts.begin(), cuts.end());
+        const std::vector<double> cuts = monotone_cuts(p.c1, p.c2, p.c3, width);
         const auto f = [&](double d) { return p.c0 + d * (p.c1 + d * (p.c2 + d * p.c3)) - level; };
         for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-            double lo = cuts[k], hi = cuts[k + 1];
-            double flo = f(lo);
-            const double fhi = f(hi);
+            const double lo = cuts[k], hi = cuts[k + 1];
+            const double flo = f(lo), fhi = f(hi);
             if (flo == 0 && (i > 0 || k > 0)) {
                 continue;  // counted by the part to its left
             }
@@ -181,20 +210,7 @@ std::vector<double> Curve::zeros(double level) const {
             if (fhi != 0 && (flo > 0) == (fhi > 0)) {
                 continue;
             }
-            for (int step = 0; step < 200 && hi - lo > 0; ++step) {
-                const double middle = (lo + hi) / 2;
-                if (middle == lo || middle == hi) {
-                    break;
-                }
-                const double fm = f(middle);
-                if ((fm > 0) == (flo > 0) && fm != 0) {
-                    lo = middle;
-                    flo = fm;
-                } else {
-                    hi = middle;
-                }
-            }
-            found.push_back(p.x + hi);
+            found.push_back(p.x + bisected(f, lo, hi));
         }
     }
     constexpr double same_root = 1e-13;  // of the range
@@ -205,8 +221,23 @@ std::vector<double> Curve::zeros(double level) const {
     return found;
 }
 
-Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<const double> held) {
+namespace {
+
+std::vector<double> knots_with_ends(const tables::ForceTable& table, std::size_t axis) {
     const tables::TableAxis& along = table.axes()[axis];
+    std::vector<double> x = table.knots(axis);
+    if (x.empty() || x.front() > along.lower) {
+        x.insert(x.begin(), along.lower);
+    }
+    if (x.back() < along.upper) {
+        x.push_back(along.upper);
+    }
+    return x;
+}
+
+}  // namespace
+
+Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<const double> held) {
     double point[tables::max_axes] = {};
     std::copy(held.begin(), held.end(), point);
     double slopes[tables::max_axes] = {};
@@ -218,13 +249,7 @@ Curve Curve::along(const tables::ForceTable& table, std::size_t axis, std::span<
         }
         return value;
     };
-    std::vector<double> x = table.knots(axis);
-    if (x.empty() || x.front() > along.lower) {
-        x.insert(x.begin(), along.lower);
-    }
-    if (x.back() < along.upper) {
-        x.push_back(along.upper);
-    }
+    const std::vector<double> x = knots_with_ends(table, axis);
     if (x.size() < 2) {
         const double flat = value_at(x.front());
         return {{x.front() - 1, x.front() + 1}, {flat, flat}, {0, 0}};

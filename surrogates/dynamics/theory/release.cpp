@@ -37,18 +37,26 @@ double stable_gap(const ReleaseSetup& s) {
     return (lo + hi) / 2;
 }
 
-}  // namespace
-
-Release release(const ReleaseSetup& s) {
-    if (!(s.mass > 0) || !(s.start > 0) || !(s.film.viscous > 0)) {
-        throw core::InputError("range", "a release needs a mass, a gap to start at and a film force");
+/// Swings beyond the equilibrium by more than a hundredth of its gap, and what that is called.
+void judge(Release& out) {
+    // A crossing counts when the motion goes on beyond the equilibrium by a hundredth of its gap.
+    const double band = 0.01 * out.equilibrium;
+    int side = -1;
+    for (const double h : out.gap) {
+        const int now = h > out.equilibrium + band ? 1 : h < out.equilibrium - band ? -1 : side;
+        out.swings += now != side ? 1 : 0;
+        side = now;
     }
-    Release out;
-    out.equilibrium = stable_gap(s);
+    out.outcome = out.swings == 0   ? ReleaseOutcome::settles
+                  : out.swings <= 2 ? ReleaseOutcome::overshoots
+                                    : ReleaseOutcome::oscillates;
+}
+
+OdeProblem problem_of(const ReleaseSetup& s) {
     const double g = film_integral(s.half_length, s.half_width);
     OdeProblem problem;
     problem.size = 2;
-    problem.rate = [&](double, const double* y, double* d) {
+    problem.rate = [&s, g](double, const double* y, double* d) {
         const double h = std::max(y[0], s.contact_gap / 2), w = y[1];
         const double damping = s.squeeze ? 12 * s.viscosity * g / (h * h * h) : 0.0;
         const double extra = s.gap_mass ? s.density * g / h : 0.0, slope = s.gap_mass ? -s.density * g / (h * h) : 0.0;
@@ -58,10 +66,22 @@ Release release(const ReleaseSetup& s) {
             (s.mass + extra);
     };
     problem.direction = {-1, -1};
-    problem.events = [&](double, const double* y, double* e) {
+    problem.events = [&s](double, const double* y, double* e) {
         e[0] = s.escape_gap - y[0];
         e[1] = y[0] - s.contact_gap;
     };
+    return problem;
+}
+
+}  // namespace
+
+Release release(const ReleaseSetup& s) {
+    if (!(s.mass > 0) || !(s.start > 0) || !(s.film.viscous > 0)) {
+        throw core::InputError("range", "a release needs a mass, a gap to start at and a film force");
+    }
+    Release out;
+    out.equilibrium = stable_gap(s);
+    OdeProblem problem = problem_of(s);
     OdeOptions options;
     options.relative = 1e-9;
     options.absolute = {1e-12, 1e-12};
@@ -88,17 +108,7 @@ Release release(const ReleaseSetup& s) {
         y = {s.contact_gap, 0.0};
         ode.start(t, y);
     }
-    // A crossing counts when the motion goes on beyond the equilibrium by a hundredth of its gap.
-    const double band = 0.01 * out.equilibrium;
-    int side = -1;
-    for (const double h : out.gap) {
-        const int now = h > out.equilibrium + band ? 1 : h < out.equilibrium - band ? -1 : side;
-        out.swings += now != side ? 1 : 0;
-        side = now;
-    }
-    out.outcome = out.swings == 0   ? ReleaseOutcome::settles
-                  : out.swings <= 2 ? ReleaseOutcome::overshoots
-                                    : ReleaseOutcome::oscillates;
+    judge(out);
     return out;
 }
 
