@@ -1,7 +1,6 @@
 #include "cases/thesis/published.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "surrogates/tables/fit/force_table.h"
 
@@ -54,16 +53,6 @@ SeparatedPlant reference_plant(ResistanceLaw drag) {
     plant.drag_force = std::move(drag);
     plant.lower = knots_gap().front();
     plant.upper = knots_gap().back();
-    return plant;
-}
-
-SeparatedPlant sine_plant() {
-    SeparatedPlant plant = reference_plant();
-    plant.ground_force = [](double h, double& slope) {
-        const double k = 2 * std::numbers::pi;
-        slope = .02 * k * std::cos(k * h);
-        return .02 * std::sin(k * h);
-    };
     return plant;
 }
 

@@ -17,8 +17,6 @@ double thesis_virtual_mass();
 std::function<double(double gap, double& slope)> reference_ground_force();
 /// REF-A with the given drag, S of the thesis, no bias.
 estimator::SeparatedPlant reference_plant(estimator::ResistanceLaw drag = estimator::quadratic_drag(0, 50.2));
-/// .02 sin(2 pi h) in place of REF-A: a curve with closed-form moments.
-estimator::SeparatedPlant sine_plant();
 
 estimator::AugmentedModel published_8_47();  ///< two nonlinear forces, order 6, with 8.48/8.49's blocks
 estimator::AugmentedModel published_grid();  ///< section 7.5, "from grid data"

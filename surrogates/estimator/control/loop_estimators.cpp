@@ -36,6 +36,34 @@ const std::vector<std::string>& loop_estimators() {
     return names;
 }
 
+namespace {
+
+/// Observers of the linear model that is learned from the plant.
+LinearFilter filter_of_model(const std::string& name, const SeparatedPlant& plant, const LoopDesign& d) {
+    const AugmentedModel model = learned_model(plant);
+    const double r = d.rate;
+    const std::vector<std::string> sensors =
+        d.velocity_measured ? std::vector<std::string>{"heave_velocity", "gap"} : std::vector<std::string>{"gap"};
+    if (name == "reduced") {
+        return reduced_observer(model, reduced_gain(model, {{-r, 0}, {-1.3 * r, 0}}), d.step).filter;
+    }
+    if (name == "kalman") {
+        const double rate = model.sigma[7] * model.sigma[7] + model.sigma[8] * model.sigma[8];
+        Vector sigma{std::max(d.gap_noise, 1e-6)};
+        if (d.velocity_measured) {
+            sigma.insert(sigma.begin(), std::max(d.velocity_noise, 1e-6));
+        }
+        return kalman_observer(model, sensors, {0, 0, rate, rate}, sigma, d.step).filter;
+    }
+    const Matrix gain = full_gain(model, sensors, {-r, -1.2 * r, -1.4 * r, -1.6 * r});
+    return name == "full" ? full_observer(model, sensors, gain, d.step).filter
+                          : latent_observer(model, usual_rotation(), {model.sigma.begin() + 1, model.sigma.begin() + 5},
+                                            {model.mean.begin() + 1, model.mean.begin() + 5}, sensors, gain, d.step)
+                                .filter;
+}
+
+}  // namespace
+
 LoopEstimator design_loop_estimator(const std::string& name, const SeparatedPlant& plant, const LoopDesign& d) {
     const auto& known = loop_estimators();
     if (std::find(known.begin(), known.end(), name) == known.end()) {
@@ -68,27 +96,7 @@ LoopEstimator design_loop_estimator(const std::string& name, const SeparatedPlan
         e.filter = disturbance_observer(plant.virtual_mass, plant.bias, d.rate, d.step).filter;
         return e;
     }
-    const AugmentedModel model = learned_model(plant);
-    const double r = d.rate;
-    const std::vector<std::string> sensors =
-        d.velocity_measured ? std::vector<std::string>{"heave_velocity", "gap"} : std::vector<std::string>{"gap"};
-    if (name == "reduced") {
-        e.filter = reduced_observer(model, reduced_gain(model, {{-r, 0}, {-1.3 * r, 0}}), d.step).filter;
-    } else if (name == "kalman") {
-        const double rate = model.sigma[7] * model.sigma[7] + model.sigma[8] * model.sigma[8];
-        Vector sigma{std::max(d.gap_noise, 1e-6)};
-        if (d.velocity_measured) {
-            sigma.insert(sigma.begin(), std::max(d.velocity_noise, 1e-6));
-        }
-        e.filter = kalman_observer(model, sensors, {0, 0, rate, rate}, sigma, d.step).filter;
-    } else {
-        const Matrix gain = full_gain(model, sensors, {-r, -1.2 * r, -1.4 * r, -1.6 * r});
-        e.filter = name == "full"
-                       ? full_observer(model, sensors, gain, d.step).filter
-                       : latent_observer(model, usual_rotation(), {model.sigma.begin() + 1, model.sigma.begin() + 5},
-                                         {model.mean.begin() + 1, model.mean.begin() + 5}, sensors, gain, d.step)
-                             .filter;
-    }
+    e.filter = filter_of_model(name, plant, d);
     return e;
 }
 

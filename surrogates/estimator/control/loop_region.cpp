@@ -158,6 +158,35 @@ Prepared prepared(const SeparatedPlant& plant, const ControlLaw& law, const Loop
     return {grid, swapped, {plant, law, estimator, loop, gaps.upper + length, tolerance}};
 }
 
+/// One draw: how many starts are held, and those that are added to the map.
+std::size_t add_draw(dynamics::ProbabilityMap& map, const Prepared& ready, double reference_gap, std::size_t draw,
+                     core::Progress& progress) {
+    const std::size_t count = map.columns * map.rows;
+    std::vector<unsigned char> held(count, 0), outside(count, 0);
+    dynamics::region_grid(
+        ready.grid,
+        [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
+            core::parallel_for(
+                count,
+                [&](std::size_t i) {
+                    const Outcome end =
+                        ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
+                    outside[i] = end.outside ? 1 : 0;
+                    held[i] =
+                        end.kind == EndKind::attractor && std::abs(end.gap - reference_gap) <= ready.judge.tolerance;
+                },
+                progress);
+        },
+        progress);
+    std::size_t good = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        map.safe[i] += held[i] != 0 ? 1.0F : 0.0F;
+        good += held[i];
+        map.path_outside_fraction += outside[i] / static_cast<double>(count * map.draws);
+    }
+    return good;
+}
+
 }  // namespace
 
 dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const ControlLaw& law,
@@ -179,28 +208,7 @@ dynamics::ProbabilityMap loop_probability(const SeparatedPlant& plant, const Con
     for (std::size_t draw = 0; draw < draws; ++draw) {
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing the sensors' noise");
-        std::vector<unsigned char> held(count, 0), outside(count, 0);
-        dynamics::region_grid(
-            ready.grid,
-            [&](std::span<const double> x, std::span<const double> y, std::span<End>) {
-                core::parallel_for(
-                    count,
-                    [&](std::size_t i) {
-                        const Outcome end =
-                            ready.swapped ? ready.judge.of(y[i], x[i], draw) : ready.judge.of(x[i], y[i], draw);
-                        outside[i] = end.outside ? 1 : 0;
-                        held[i] = end.kind == EndKind::attractor &&
-                                  std::abs(end.gap - law.reference_gap) <= ready.judge.tolerance;
-                    },
-                    progress);
-            },
-            progress);
-        std::size_t good = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            map.safe[i] += held[i] != 0 ? 1.0F : 0.0F;
-            good += held[i];
-            map.path_outside_fraction += outside[i] / static_cast<double>(count * draws);
-        }
+        const std::size_t good = add_draw(map, ready, law.reference_gap, draw, progress);
         const double share = static_cast<double>(good) / static_cast<double>(count);
         sum += share;
         squares += share * share;
@@ -294,7 +302,7 @@ dynamics::StabilityRegion loop_region(const SeparatedPlant& plant, const Control
     region.outside_fraction = dynamics::outside_share(region);
     region.remarks = plant.remarks;
     dynamics::add_outside_remarks(region);
-    // Loops are dear: lines midway between starts, without further runs.
+    // Motions of a loop take long: lines midway between starts, without further runs.
     grid.refine = false;
     dynamics::add_traced_boundaries(region, grid, {}, ends, progress);
     return region;

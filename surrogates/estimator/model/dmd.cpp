@@ -61,6 +61,64 @@ SnapshotPairs snapshot_pairs(const Layout& layout, const std::vector<std::vector
     return pairs;
 }
 
+namespace {
+
+/// One step of (x, u, 1), input and one held, from the law between scaled snapshots.
+Matrix step_matrix(const Matrix& law, const Moments& m, const Vector& sigma, std::size_t nx, std::size_t nu) {
+    const std::size_t ne = nu + nx;
+    Matrix whole = Matrix::identity(nx + nu + 1);
+    for (std::size_t i = 0; i < nx; ++i) {
+        double constant = m.mean[ne + i];
+        for (std::size_t j = 0; j < ne; ++j) {
+            const double value = sigma[j] > 0 ? law(i, j) / sigma[j] : 0;
+            whole(i, j < nu ? nx + j : j - nu) = value;
+            constant -= value * m.mean[j];
+        }
+        whole(i, nx + nu) = constant;
+    }
+    return whole;
+}
+
+/// Correlations of the states and inputs before a step with each other, and with the states behind it, whose scale
+/// stays.
+struct Correlations {
+    Matrix own, cross;
+};
+
+Correlations correlations(const Moments& m, const Vector& sigma, std::size_t nx, std::size_t ne) {
+    Correlations c{Matrix(ne, ne), Matrix(nx, ne)};
+    for (std::size_t j = 0; j < ne; ++j) {
+        for (std::size_t i = 0; i < ne && sigma[j] > 0; ++i) {
+            c.own(i, j) = sigma[i] > 0 ? m.covariance(i, j) / (sigma[i] * sigma[j]) : 0;
+        }
+        for (std::size_t i = 0; i < nx && sigma[j] > 0; ++i) {
+            c.cross(i, j) = m.covariance(ne + i, j) / sigma[j];
+        }
+    }
+    return c;
+}
+
+/// The inverse of the correlations along their directions of most variance, `order` of them (0: all but noise). Order,
+/// rank and eigenvalues go into the model.
+Matrix leading_inverse(const Matrix& own, std::size_t order, AugmentedModel& model) {
+    const std::size_t ne = own.rows();
+    const auto spectrum = dynamics::symmetric_eigen(own);
+    Matrix inverted(ne, ne);
+    for (std::size_t k = 0; k < ne; ++k) {
+        model.eigenvalues.push_back(spectrum.values[k]);
+        const bool noise = spectrum.values[k] <= 1e-12 * static_cast<double>(ne);
+        model.rank += noise ? 0U : 1U;
+        if (!noise && (order == 0 || model.order < order)) {
+            ++model.order;
+            const Matrix direction = Matrix::column(spectrum.vectors.column_of(k));
+            inverted = inverted + (1 / spectrum.values[k]) * (direction * direction.transposed());
+        }
+    }
+    return inverted;
+}
+
+}  // namespace
+
 AugmentedModel learn_dmd(const SnapshotPairs& pairs, std::size_t order) {
     const Layout& layout = pairs.layout;
     const std::size_t nu = layout.inputs.size(), nx = layout.states.size(), ne = nu + nx;
@@ -74,42 +132,13 @@ AugmentedModel learn_dmd(const SnapshotPairs& pairs, std::size_t order) {
     for (std::size_t i = 0; i < sigma.size(); ++i) {
         sigma[i] = std::sqrt(std::max(m.covariance(i, i), 0.0));
     }
-    Matrix own(ne, ne), cross(nx, ne);
-    for (std::size_t j = 0; j < ne; ++j) {
-        for (std::size_t i = 0; i < ne && sigma[j] > 0; ++i) {
-            own(i, j) = sigma[i] > 0 ? m.covariance(i, j) / (sigma[i] * sigma[j]) : 0;
-        }
-        for (std::size_t i = 0; i < nx && sigma[j] > 0; ++i) {
-            cross(i, j) = m.covariance(ne + i, j) / sigma[j];
-        }
-    }
-    const auto spectrum = dynamics::symmetric_eigen(own);
+    const auto [own, cross] = correlations(m, sigma, nx, ne);
     AugmentedModel model;
     model.layout = layout;
     model.samples = pairs.count;
-    Matrix inverted(ne, ne);
-    for (std::size_t k = 0; k < ne; ++k) {
-        model.eigenvalues.push_back(spectrum.values[k]);
-        const bool noise = spectrum.values[k] <= 1e-12 * static_cast<double>(ne);
-        model.rank += noise ? 0U : 1U;
-        if (!noise && (order == 0 || model.order < order)) {
-            ++model.order;
-            const Matrix direction = Matrix::column(spectrum.vectors.column_of(k));
-            inverted = inverted + (1 / spectrum.values[k]) * (direction * direction.transposed());
-        }
-    }
-    const Matrix law = cross * inverted;
-    // One step of (x, u, 1), input and one held: its logarithm holds A, B and the offset.
-    Matrix whole = Matrix::identity(nx + nu + 1);
-    for (std::size_t i = 0; i < nx; ++i) {
-        double constant = m.mean[ne + i];
-        for (std::size_t j = 0; j < ne; ++j) {
-            const double value = sigma[j] > 0 ? law(i, j) / sigma[j] : 0;
-            whole(i, j < nu ? nx + j : j - nu) = value;
-            constant -= value * m.mean[j];
-        }
-        whole(i, nx + nu) = constant;
-    }
+    const Matrix law = cross * leading_inverse(own, order, model);
+    // Its logarithm holds A, B and the offset.
+    const Matrix whole = step_matrix(law, m, sigma, nx, nu);
     const Matrix rate = (1 / pairs.step) * logarithm(whole);
     model.A = rate.block(0, 0, nx, nx);
     model.B = rate.block(0, nx, nx, nu);

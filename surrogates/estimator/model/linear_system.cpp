@@ -59,10 +59,37 @@ std::string direction_text(const Vector& direction, const std::vector<std::strin
     return text;
 }
 
-Observability observability(const Matrix& a, const Matrix& c, const Vector& scale, double tolerance) {
-    check_square(a);
+namespace {
+
+/// An orthonormal basis of what is not seen, in the coordinates of the states; the largest entry of each direction is
+/// positive.
+Matrix unobservable_directions(const Matrix& v, std::size_t rank, const Vector& s) {
+    const std::size_t n = s.size();
+    Matrix basis = v.block(0, rank, n, n - rank);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < basis.columns(); ++j) {
+            basis(i, j) *= s[i];
+        }
+    }
+    Matrix q = dynamics::singular_value_decomposition(basis).u.block(0, 0, n, basis.columns());
+    for (std::size_t j = 0; j < q.columns(); ++j) {  // the largest entry is positive
+        const Vector column = q.column_of(j);
+        const auto at = std::max_element(column.begin(), column.end(),
+                                         [](double x, double y) { return std::abs(x) < std::abs(y); });
+        for (std::size_t i = 0; i < n && *at < 0; ++i) {
+            q(i, j) = -q(i, j);
+        }
+    }
+    return q;
+}
+
+/// In coordinates x = s x', so that sizes of the states do not decide the rank.
+struct Scaled {
+    Matrix a, c;
+};
+
+Scaled scaled(const Matrix& a, const Matrix& c, const Vector& s) {
     const std::size_t n = a.rows(), p = c.rows();
-    const Vector s = scale.empty() ? Vector(n, 1.0) : scale;
     // In coordinates x = s x', so that sizes of the states do not decide the rank.
     Matrix as = a, cs = c;
     for (std::size_t j = 0; j < n; ++j) {
@@ -80,6 +107,16 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
         }
     }
     as = (1 / std::max(dynamics::frobenius_norm(as), 1e-6)) * as;  // rates below 1e-6 1/s (eleven days) count as none
+    return {as, cs};
+}
+
+}  // namespace
+
+Observability observability(const Matrix& a, const Matrix& c, const Vector& scale, double tolerance) {
+    check_square(a);
+    const std::size_t n = a.rows(), p = c.rows();
+    const Vector s = scale.empty() ? Vector(n, 1.0) : scale;
+    const auto [as, cs] = scaled(a, c, s);
     Matrix o(p * n, n);
     o.set_block(0, 0, cs);
     for (std::size_t k = 1; k < n; ++k) {
@@ -95,22 +132,8 @@ Observability observability(const Matrix& a, const Matrix& c, const Vector& scal
     if (result.rank == n) {
         return result;
     }
-    Matrix basis = d.v.block(0, result.rank, n, n - result.rank);
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j < basis.columns(); ++j) {
-            basis(i, j) *= s[i];
-        }
-    }
-    Matrix q = dynamics::singular_value_decomposition(basis).u.block(0, 0, n, basis.columns());
-    for (std::size_t j = 0; j < q.columns(); ++j) {  // the largest entry is positive
-        const Vector column = q.column_of(j);
-        const auto at = std::max_element(column.begin(), column.end(),
-                                         [](double x, double y) { return std::abs(x) < std::abs(y); });
-        for (std::size_t i = 0; i < n && *at < 0; ++i) {
-            q(i, j) = -q(i, j);
-        }
-    }
-    result.unobservable = q;
+    result.unobservable = unobservable_directions(d.v, result.rank, s);
+    const Matrix& q = result.unobservable;
     result.unobservable_poles = eigenvalues(q.transposed() * a * q);
     for (const auto& pole : result.unobservable_poles) {
         result.detectable = result.detectable && pole.real() < -1e-9;

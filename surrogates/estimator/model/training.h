@@ -8,12 +8,16 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "surrogates/dynamics/simulate/heave_step.h"
+#include "surrogates/dynamics/plant/heave_equation.h"
 #include "surrogates/estimator/model/augmented_model.h"
 
 namespace underbody::dynamics {
 struct Model;
 }  // namespace underbody::dynamics
+
+namespace underbody::dynamics {
+struct HeaveState;
+}
 
 namespace underbody::estimator {
 

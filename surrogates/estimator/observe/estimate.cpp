@@ -252,10 +252,7 @@ Innovations innovations_of(const ObserverDesign& design, const UniformRun& run, 
         r(i, i) = sigma[i] * sigma[i];
     }
     const Matrix back = inverse(left), spread = back * r, weight = inverse(spread);
-    double size = spread(0, 0);
-    if (p == 2) {
-        size = spread(0, 0) * spread(1, 1) - spread(0, 1) * spread(1, 0);
-    }
+    const double size = p == 2 ? spread(0, 0) * spread(1, 1) - spread(0, 1) * spread(1, 0) : spread(0, 0);
     Innovations sum;
     std::size_t since = 0;
     follow(f, run, [&](std::size_t k, const double* y, const double* e) {
@@ -305,21 +302,88 @@ double likely_linear_density(const AugmentedModel& model, const std::vector<Prep
     return best;
 }
 
-void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o, Estimation& out, Columns& columns,
-                     core::Progress& progress) {
+RunEstimate summary_of(const std::string& name, const UniformRun& u) {
+    RunEstimate summary;
+    summary.name = name;
+    summary.samples = u.time.size();
+    summary.used = u.time.size();
+    summary.outliers = u.outliers;
+    summary.missing = u.missing;
+    summary.gaps_in_time = u.gaps;
+    summary.mean_squared_innovation = NAN;
+    return summary;
+}
+
+/// The usual step of most runs.
+double common_step(const std::vector<Prepared>& runs) {
     std::vector<double> steps;
     for (const auto& r : runs) {
         steps.push_back(usual_step(r.signals));
     }
     std::sort(steps.begin(), steps.end());
-    const double step = steps[steps.size() / 2];
-    const auto differs = [&](const Prepared& r) {
-        double unused = 0;
-        const SeparatedPlant &a = runs.front().plant, &b = r.plant;
-        const double h = 0.5 * (std::max(a.lower, a.contact_gap) + a.upper), force = a.ground_force(h, unused);
-        return std::abs(b.ground_force(h, unused) - force) > 0.01 * std::abs(force) || std::abs(b.bias - a.bias) > 1e-6;
+    return steps[steps.size() / 2];
+}
+
+bool differs(const SeparatedPlant& a, const SeparatedPlant& b) {
+    double unused = 0;
+    const double h = 0.5 * (std::max(a.lower, a.contact_gap) + a.upper), force = a.ground_force(h, unused);
+    return std::abs(b.ground_force(h, unused) - force) > 0.01 * std::abs(force) || std::abs(b.bias - a.bias) > 1e-6;
+}
+
+/// Of each estimate of a linear observer.
+Vector sigmas_of(const ObserverDesign& design, const FilterNoise& sensors, core::Problems& remarks) {
+    const LinearFilter& f = design.filter;
+    Vector sigma;
+    if (!design.covariance.empty()) {
+        for (std::size_t i = 0; i < f.estimates.size(); ++i) {
+            sigma.push_back(std::sqrt(std::max(design.covariance(i, i), 0.0)));
+        }
+        return sigma;
+    }
+    Vector noise;
+    for (const auto& s : f.measured) {
+        noise.push_back(s == "gap" ? sensors.gap : sensors.velocity);
+    }
+    note(remarks, "sigmas of this observer count the sensors' noise alone, not what its model misses");
+    return noise_gain(f, noise);
+}
+
+/// What a linear observer says at sample k of a run; what it does not estimate is taken from the sensors.
+FilterEstimate row_of(const LinearFilter& f, const Vector& sigma, const FilterNoise& noise, const SeparatedPlant& plant,
+                      const UniformRun& u, std::size_t k, const double* e) {
+    FilterEstimate row;
+    const auto pick = [&](const char* name, double& value, double& its_sigma, double other, double other_sigma) {
+        const int i = find(f.estimates, name);
+        value = i >= 0 ? e[i] : other;
+        its_sigma = i >= 0 ? sigma[static_cast<std::size_t>(i)] : other_sigma;
     };
-    if (std::any_of(runs.begin(), runs.end(), differs)) {
+    pick("gap", row.gap, row.gap_sigma, u.gap[k], noise.gap);
+    pick("heave_velocity", row.velocity, row.velocity_sigma, u.velocity.empty() ? NAN : u.velocity[k],
+         noise.velocity > 0 ? noise.velocity : NAN);
+    pick("ground_force", row.ground_force, row.ground_sigma, NAN, NAN);
+    pick("drag_force", row.drag_force, row.drag_sigma, NAN, NAN);
+    pick("total_force", row.total_force, row.total_sigma, NAN, NAN);
+    row.innovation = NAN;
+    if (std::isfinite(row.ground_force) && std::isfinite(row.drag_force)) {
+        // What departs from the declared laws may be the ground's or the drag's, whatever a linear law made of it.
+        FilterEstimate declared;
+        double slope = 0;
+        declared.drag_force = plant.drag(row.gap, row.velocity);
+        declared.departure = row.total_force - (plant.ground_force(row.gap, slope) - declared.drag_force);
+        declared.departure_sigma = row.total_sigma;
+        const double split = split_sigma(noise, declared);
+        row.ground_sigma = std::hypot(row.ground_sigma, split);
+        row.drag_sigma = std::hypot(row.drag_sigma, split);
+    }
+    row.outside = row.gap < plant.lower || row.gap > plant.upper;
+    return row;
+}
+
+void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o, Estimation& out, Columns& columns,
+                     core::Progress& progress) {
+    const double step = common_step(runs);
+    if (std::any_of(runs.begin(), runs.end(),
+                    [&](const Prepared& r) { return differs(runs.front().plant, r.plant); })) {
         note(out.remarks, "the runs have different conditions; a linear observer has one model, that of run '" +
                               runs.front().run->name + "': take the extended filter, or the runs apart");
     }
@@ -342,72 +406,37 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
     const ObserverDesign& design = out.design.front();
     out.separability = design.separability;
     const LinearFilter& f = design.filter;
-    Vector sigma;
-    if (!design.covariance.empty()) {
-        for (std::size_t i = 0; i < f.estimates.size(); ++i) {
-            sigma.push_back(std::sqrt(std::max(design.covariance(i, i), 0.0)));
-        }
-    } else {
-        Vector noise;
-        for (const auto& s : f.measured) {
-            noise.push_back(s == "gap" ? out.noise.gap : out.noise.velocity);
-        }
-        sigma = noise_gain(f, noise);
-        note(out.remarks, "sigmas of this observer count the sensors' noise alone, not what its model misses");
-    }
-    const int at[] = {find(f.estimates, "gap"), find(f.estimates, "heave_velocity"), find(f.estimates, "ground_force"),
-                      find(f.estimates, "drag_force"), find(f.estimates, "total_force")};
+    const Vector sigma = sigmas_of(design, out.noise, out.remarks);
     for (std::size_t run = 0; run < runs.size(); ++run) {
         progress.check();
         const Prepared& r = runs[run];
         const UniformRun& u = signals[run];
-        RunEstimate summary;
-        summary.name = r.run->name;
-        summary.samples = u.time.size();
-        summary.used = u.time.size();
-        summary.outliers = u.outliers;
-        summary.missing = u.missing;
-        summary.gaps_in_time = u.gaps;
-        summary.mean_squared_innovation = NAN;
+        RunEstimate summary = summary_of(r.run->name, u);
         if (o.observer == "kalman") {
             const Vector own =
                 out.noise.velocity > 0 ? Vector{out.noise.velocity, out.noise.gap} : Vector{out.noise.gap};
             summary.mean_squared_innovation = innovations_of(design, u, own).mean_square();
         }
         follow(f, u, [&](std::size_t k, const double*, const double* e) {
-            FilterEstimate row;
-            const auto pick = [&](int i, double other) { return i >= 0 ? e[i] : other; };
-            const auto pick_sigma = [&](int i, double other) {
-                return i >= 0 ? sigma[static_cast<std::size_t>(i)] : other;
-            };
-            row.gap = pick(at[0], u.gap[k]);
-            row.velocity = pick(at[1], u.velocity.empty() ? NAN : u.velocity[k]);
-            row.ground_force = pick(at[2], NAN);
-            row.drag_force = pick(at[3], NAN);
-            row.total_force = pick(at[4], NAN);
-            row.gap_sigma = pick_sigma(at[0], out.noise.gap);
-            row.velocity_sigma = pick_sigma(at[1], out.noise.velocity > 0 ? out.noise.velocity : NAN);
-            row.ground_sigma = pick_sigma(at[2], NAN);
-            row.drag_sigma = pick_sigma(at[3], NAN);
-            row.total_sigma = pick_sigma(at[4], NAN);
-            row.innovation = NAN;
-            if (std::isfinite(row.ground_force) && std::isfinite(row.drag_force)) {
-                // What departs from the declared laws may be the ground's or the drag's, whatever a linear law made of
-                // it.
-                FilterEstimate declared;
-                double slope = 0;
-                declared.drag_force = r.plant.drag(row.gap, row.velocity);
-                declared.departure = row.total_force - (r.plant.ground_force(row.gap, slope) - declared.drag_force);
-                declared.departure_sigma = row.total_sigma;
-                const double split = split_sigma(out.noise, declared);
-                row.ground_sigma = std::hypot(row.ground_sigma, split);
-                row.drag_sigma = std::hypot(row.drag_sigma, split);
-            }
-            row.outside = row.gap < r.plant.lower || row.gap > r.plant.upper;
+            const FilterEstimate row = row_of(f, sigma, out.noise, r.plant, u, k, e);
             add(columns, summary.name, u.time[k], row);
             columns.note.back() = u.restart[k] && k > 0 ? "started anew" : row.outside ? "outside the table" : "";
         });
         out.runs.push_back(summary);
+    }
+}
+
+void add_remarks(Estimation& out) {
+    for (const auto& r : out.runs) {
+        if (r.outliers > 0) {
+            note(out.remarks, "run '" + r.name + "': " +
+                                  core::counted(r.outliers, "outlier of the gap was", "outliers of the gap were") +
+                                  " left out");
+        }
+        if (r.outside > 0) {
+            note(out.remarks,
+                 "run '" + r.name + "': " + core::format_number(100 * r.outside, 3) + " % lies beyond the force table");
+        }
     }
 }
 
@@ -451,17 +480,7 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
         out.labels.emplace_back("ground_force", "model-dependent");
         out.labels.emplace_back("drag_force", "model-dependent");
     }
-    for (const auto& r : out.runs) {
-        if (r.outliers > 0) {
-            note(out.remarks, "run '" + r.name + "': " +
-                                  core::counted(r.outliers, "outlier of the gap was", "outliers of the gap were") +
-                                  " left out");
-        }
-        if (r.outside > 0) {
-            note(out.remarks,
-                 "run '" + r.name + "': " + core::format_number(100 * r.outside, 3) + " % lies beyond the force table");
-        }
-    }
+    add_remarks(out);
     out.figure = forces_figure(columns, out.runs.front().name);
     out.table = columns.table();
     return out;

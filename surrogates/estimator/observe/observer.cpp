@@ -299,6 +299,42 @@ ObserverDesign disturbance_observer(double virtual_mass, double bias, double rat
     return design;
 }
 
+namespace {
+
+void check_noise(const Vector& sensor_sigma) {
+    for (const double s : sensor_sigma) {
+        if (!(s > 0)) {
+            throw core::InputError("range", "the noise of a sensor must be positive");
+        }
+    }
+}
+
+/// x = phi' x + gain y + input u, with what the gain keeps of the model's own step.
+LinearFilter kalman_filter(const AugmentedModel& model, const std::vector<std::string>& sensors, const Discrete& d,
+                           const Matrix& gain, const Matrix& c, double step) {
+    const std::size_t n = model.layout.states.size(), p = sensors.size();
+    const Matrix keep = Matrix::identity(n) - gain * c;
+    LinearFilter f;
+    f.name = "Kalman";
+    f.step = step;
+    f.measured = sensors;
+    f.inputs = model.layout.inputs;
+    f.estimates = model.layout.states;
+    f.phi = keep * d.phi;
+    f.previous = Matrix(n, p);
+    f.present = gain;
+    f.input = keep * d.gamma.block(0, 0, n, model.layout.inputs.size());
+    f.constant = keep * d.gamma.column_of(model.layout.inputs.size());
+    f.output = Matrix::identity(n);
+    f.feed = Matrix(n, p);
+    f.output_constant = Vector(n, 0.0);
+    f.start = Vector(n, 0.0);
+    f.start_feed = c.transposed();
+    return f;
+}
+
+}  // namespace
+
 ObserverDesign kalman_observer(const AugmentedModel& model, const std::vector<std::string>& sensors,
                                const Vector& process, const Vector& sensor_sigma, double step) {
     check_step(step);
@@ -306,11 +342,7 @@ ObserverDesign kalman_observer(const AugmentedModel& model, const std::vector<st
     if (process.size() != n || sensor_sigma.size() != p) {
         throw core::InputError("shape", "the filter needs one process density per state and one sigma per sensor");
     }
-    for (const double s : sensor_sigma) {
-        if (!(s > 0)) {
-            throw core::InputError("range", "the noise of a sensor must be positive");
-        }
-    }
+    check_noise(sensor_sigma);
     const Matrix c = sensor_matrix(model, sensors);
     Matrix held(n, model.layout.inputs.size() + 1);
     held.set_block(0, 0, model.B);
@@ -329,21 +361,7 @@ ObserverDesign kalman_observer(const AugmentedModel& model, const std::vector<st
     design.gain = gain;
     const Matrix after = keep * before * keep.transposed() + gain * r * gain.transposed();  // Joseph's form
     LinearFilter& f = design.filter;
-    f.name = "Kalman";
-    f.step = step;
-    f.measured = sensors;
-    f.inputs = model.layout.inputs;
-    f.estimates = model.layout.states;
-    f.phi = keep * d.phi;
-    f.previous = Matrix(n, p);
-    f.present = gain;
-    f.input = keep * d.gamma.block(0, 0, n, model.layout.inputs.size());
-    f.constant = keep * d.gamma.column_of(model.layout.inputs.size());
-    f.output = Matrix::identity(n);
-    f.feed = Matrix(n, p);
-    f.output_constant = Vector(n, 0.0);
-    f.start = Vector(n, 0.0);
-    f.start_feed = c.transposed();
+    f = kalman_filter(model, sensors, d, gain, c, step);
     add_total(f);
     design.covariance = f.output * after * f.output.transposed();
     design.discrete_poles = eigenvalues(f.phi);
@@ -380,6 +398,34 @@ Vector noise_gain(const LinearFilter& f, const Vector& sensor_sigma) {
     return sigma;
 }
 
+namespace {
+
+std::string explanation_of(const Separability& s, const AugmentedModel& model, bool two) {
+    const std::size_t nx = model.layout.measured, nz = model.layout.states.size() - nx;
+    const auto& states = model.layout.states;
+    if (s.reduced.rank < nz) {
+        const std::vector<std::string> names(states.begin() + static_cast<std::ptrdiff_t>(nx), states.end());
+        return "only the total force is seen; an error along " +
+               direction_text(s.reduced.unobservable.column_of(0), names) + " stays for ever whatever the gain";
+    }
+    if (two) {
+        char text[300];
+        if (std::isnan(s.b_eff)) {
+            std::snprintf(text, sizeof text, "the split of the total force rests on the model alone");
+        } else {
+            std::snprintf(text, sizeof text,
+                          "the split rests on the drag law that the model holds: at slow drift drag_force is %.4g N "
+                          "s/m times the "
+                          "velocity, right or wrong; their difference, the total force, is seen",
+                          s.b_eff);
+        }
+        return text;
+    }
+    return "each auxiliary variable is told apart by the model's own law; only what moves the acceleration is seen";
+}
+
+}  // namespace
+
 Separability separability(const AugmentedModel& model) {
     const std::size_t nx = model.layout.measured, nz = model.layout.states.size() - nx;
     Separability s;
@@ -408,27 +454,7 @@ Separability separability(const AugmentedModel& model) {
         // holds.
         s.labels.emplace_back(hidden ? "unobservable" : nz == 1 ? "observed" : "model-dependent");
     }
-    if (s.reduced.rank < nz) {
-        const std::vector<std::string> names(states.begin() + static_cast<std::ptrdiff_t>(nx), states.end());
-        s.explanation = "only the total force is seen; an error along " +
-                        direction_text(s.reduced.unobservable.column_of(0), names) +
-                        " stays for ever whatever the gain";
-    } else if (two) {
-        char text[300];
-        if (std::isnan(s.b_eff)) {
-            std::snprintf(text, sizeof text, "the split of the total force rests on the model alone");
-        } else {
-            std::snprintf(text, sizeof text,
-                          "the split rests on the drag law that the model holds: at slow drift drag_force is %.4g N "
-                          "s/m times the "
-                          "velocity, right or wrong; their difference, the total force, is seen",
-                          s.b_eff);
-        }
-        s.explanation = text;
-    } else {
-        s.explanation =
-            "each auxiliary variable is told apart by the model's own law; only what moves the acceleration is seen";
-    }
+    s.explanation = explanation_of(s, model, two);
     return s;
 }
 

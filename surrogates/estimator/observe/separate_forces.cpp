@@ -3,6 +3,7 @@
 
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/heave_step.h"
 #include "surrogates/estimator/model/training.h"
 
 namespace underbody::estimator {
@@ -49,6 +50,31 @@ void SeparatedPlant::advance(double& gap, double& velocity, double input, double
     velocity = state.w;
 }
 
+namespace {
+
+/// What neither the one table of the ground nor the drag holds: waves, several tables, losses of thrust, corrections.
+void add_other_force(SeparatedPlant& plant, const std::shared_ptr<const dynamics::HeavePlant>& heave) {
+    const dynamics::HeaveTerms& terms = heave->terms;
+    const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
+                                     [](const auto& correction) { return correction.curve.empty(); });
+    if (!terms.waves.empty() || several || !heave->single_curve() || terms.thrust_loss != 0) {
+        plant.other_force = [heave](double t, double h, double w, double u) {
+            // Tables over the velocity too: what they give beside their value at rest.
+            dynamics::HeaveLoad load = heave->table_lift(h, w);
+            const dynamics::HeaveLoad at_rest = heave->table_lift(h, 0);
+            load.force += wave_force(heave->terms, t) - at_rest.force;
+            load.slope_h -= at_rest.slope_h;
+            const double lost = u * heave->terms.thrust_lost(h);
+            load.force -= lost;
+            load.slope_h += lost / heave->terms.thrust_length;
+            add_corrections(heave->terms, h, w, {t, u}, heave->held(), load);
+            return load;
+        };
+    }
+}
+
+}  // namespace
+
 SeparatedPlant separate(const dynamics::Model& model, const dynamics::Conditions& held) {
     const auto heave = std::make_shared<const dynamics::HeavePlant>(model, held);
     const dynamics::HeaveTerms& terms = heave->terms;
@@ -78,22 +104,7 @@ SeparatedPlant separate(const dynamics::Model& model, const dynamics::Conditions
     if (!terms.growth.empty() || !terms.added_mass.empty()) {
         plant.inertia = [heave](double h) { return heave_inertia(heave->terms, h); };
     }
-    const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
-                                     [](const auto& correction) { return correction.curve.empty(); });
-    if (!terms.waves.empty() || several || !heave->single_curve() || terms.thrust_loss != 0) {
-        plant.other_force = [heave](double t, double h, double w, double u) {
-            // Tables over the velocity too: what they give beside their value at rest.
-            dynamics::HeaveLoad load = heave->table_lift(h, w);
-            const dynamics::HeaveLoad at_rest = heave->table_lift(h, 0);
-            load.force += wave_force(heave->terms, t) - at_rest.force;
-            load.slope_h -= at_rest.slope_h;
-            const double lost = u * heave->terms.thrust_lost(h);
-            load.force -= lost;
-            load.slope_h += lost / heave->terms.thrust_length;
-            add_corrections(heave->terms, h, w, {t, u}, heave->held(), load);
-            return load;
-        };
-    }
+    add_other_force(plant, heave);
     if (terms.film != 0 || terms.friction != 0) {
         plant.fastest_rate = [heave](const dynamics::HeaveState& state, double a, double step) {
             return dynamics::fastest_rate(heave->terms, state, a, step);

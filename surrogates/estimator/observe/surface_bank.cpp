@@ -71,6 +71,41 @@ std::vector<double> usual_densities(double largest_force) {
     return densities;
 }
 
+namespace {
+
+/// The surface that is likeliest at the end, and the force density that is likeliest with it.
+void judge(SurfaceProbability& result, const std::vector<Member>& bank, const Vector& densities) {
+    for (std::size_t s = 1; s < result.names.size(); ++s) {
+        result.best = result.probability[s].back() > result.probability[result.best].back() ? s : result.best;
+    }
+    const auto first = bank.begin() + static_cast<std::ptrdiff_t>(result.best * densities.size());
+    const auto likeliest =
+        std::max_element(first, first + static_cast<std::ptrdiff_t>(densities.size()),
+                         [](const Member& a, const Member& b) { return a.log_weight < b.log_weight; });
+    result.force_density = densities[static_cast<std::size_t>(likeliest - first)];
+    result.mean_squared_innovation = likeliest->count > 0 ? likeliest->squares / likeliest->count : NAN;
+}
+
+/// A filter for each surface and force density, those of one surface beside each other.
+std::vector<Member> bank_of(const std::vector<Surface>& surfaces, const RunSignals& run, const SurfaceOptions& options,
+                            const Vector& prior, const Vector& densities) {
+    std::vector<FilterNoise> noises(densities.size(), options.noise);
+    for (std::size_t d = 0; d < densities.size(); ++d) {
+        noises[d].force_density = densities[d];
+    }
+    std::vector<Member> bank;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        for (const FilterNoise& noise : noises) {
+            bank.push_back({ExtendedRunner(surfaces[s].plant, noise)});
+            bank.back().runner.start(start_of_run(bank.back().runner, run, noise));
+            bank.back().log_weight = std::log(prior[s] / static_cast<double>(densities.size()));
+        }
+    }
+    return bank;
+}
+
+}  // namespace
+
 SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const RunSignals& run,
                                     const SurfaceOptions& options) {
     if (surfaces.size() < 2) {
@@ -79,21 +114,12 @@ SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const 
     check_run(run);
     const Vector prior = prior_of(surfaces, options);
     const Vector densities = options.densities.empty() ? Vector{options.noise.force_density} : options.densities;
-    std::vector<FilterNoise> noises(densities.size(), options.noise);
-    for (std::size_t d = 0; d < densities.size(); ++d) {
-        noises[d].force_density = densities[d];
-    }
+    std::vector<Member> bank = bank_of(surfaces, run, options, prior, densities);
     SurfaceProbability result;
-    std::vector<Member> bank;
     std::vector<RunSignals> felt;  // per surface: its input behind that model's actuator
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         result.names.push_back(surfaces[s].name);
         felt.push_back(through_actuator(surfaces[s].plant, run));
-        for (const FilterNoise& noise : noises) {
-            bank.push_back({ExtendedRunner(surfaces[s].plant, noise)});
-            bank.back().runner.start(start_of_run(bank.back().runner, run, noise));
-            bank.back().log_weight = std::log(prior[s] / static_cast<double>(densities.size()));
-        }
     }
     result.time = run.time;
     result.probability.assign(surfaces.size(), std::vector<double>(run.time.size()));
@@ -119,15 +145,7 @@ SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const 
             result.probability[i / densities.size()][k] += std::exp(bank[i].log_weight);
         }
     }
-    for (std::size_t s = 1; s < surfaces.size(); ++s) {
-        result.best = result.probability[s].back() > result.probability[result.best].back() ? s : result.best;
-    }
-    const auto first = bank.begin() + static_cast<std::ptrdiff_t>(result.best * densities.size());
-    const auto likeliest =
-        std::max_element(first, first + static_cast<std::ptrdiff_t>(densities.size()),
-                         [](const Member& a, const Member& b) { return a.log_weight < b.log_weight; });
-    result.force_density = densities[static_cast<std::size_t>(likeliest - first)];
-    result.mean_squared_innovation = likeliest->count > 0 ? likeliest->squares / likeliest->count : NAN;
+    judge(result, bank, densities);
     return result;
 }
 

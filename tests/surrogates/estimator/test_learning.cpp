@@ -25,6 +25,17 @@ void expect_near(const Vector& got, const Vector& want, double tolerance, const 
     }
 }
 
+// .02 sin(2 pi h) in place of REF-A: a curve with closed-form moments.
+SeparatedPlant sine_plant() {
+    SeparatedPlant plant = reference_plant();
+    plant.ground_force = [](double h, double& slope) {
+        const double k = 2 * std::numbers::pi;
+        slope = .02 * k * std::cos(k * h);
+        return .02 * std::sin(k * h);
+    };
+    return plant;
+}
+
 // The deterministic mesh of the oracles.
 TrainingSet oracle_mesh(const SeparatedPlant& plant) {
     TrainingOptions o;
