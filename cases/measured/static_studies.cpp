@@ -1,5 +1,6 @@
 // Static sets of others. Their channels are not the program's: what stands for what is said at each study.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cases/measured/foreign_table.h"
@@ -162,6 +163,39 @@ std::vector<MeasuredStudy> bank_studies(const std::filesystem::path& folder, cor
     return studies;
 }
 
+namespace {
+
+/// Parabola c0 + c1 d + c2 d^2 by least squares through moments of d.
+std::array<double, 3> parabola(const std::vector<double>& duty, const std::vector<double>& values) {
+    double m[5] = {}, r[3] = {};
+    for (std::size_t i = 0; i < duty.size(); ++i) {
+        for (int k = 0; k < 5; ++k) {
+            m[k] += std::pow(duty[i], k);
+        }
+        for (int k = 0; k < 3; ++k) {
+            r[k] += std::pow(duty[i], k) * values[i];
+        }
+    }
+    const auto determinant = [](const double(&a)[3][3]) {
+        return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+               a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    };
+    const double whole[3][3] = {{m[0], m[1], m[2]}, {m[1], m[2], m[3]}, {m[2], m[3], m[4]}};
+    std::array<double, 3> c{};
+    for (int k = 0; k < 3; ++k) {
+        double with[3][3];
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) {
+                with[i][j] = j == k ? r[i] : whole[i][j];
+            }
+        }
+        c[k] = determinant(with) / determinant(whole);  // Cramer
+    }
+    return c;
+}
+
+}  // namespace
+
 MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Progress& progress) {
     const std::filesystem::path source = folder / "cf21_thrust_stand" / "cf2.1-stock-prop.csv";
     const ForeignTable stand = read_foreign(source);
@@ -180,31 +214,7 @@ MeasuredStudy thrust_stand_study(const std::filesystem::path& folder, core::Prog
         volt.push_back(battery[i]);
         set.values.push_back(newton_per_gram * weight[i]);
     }
-    // parabola a + b d + c d^2 by least squares through moments of d
-    double m[5] = {}, r[3] = {};
-    for (std::size_t i = 0; i < duty.size(); ++i) {
-        for (int k = 0; k < 5; ++k) {
-            m[k] += std::pow(duty[i], k);
-        }
-        for (int k = 0; k < 3; ++k) {
-            r[k] += std::pow(duty[i], k) * set.values[i];
-        }
-    }
-    const auto determinant = [](const double(&a)[3][3]) {
-        return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
-               a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
-    };
-    const double whole[3][3] = {{m[0], m[1], m[2]}, {m[1], m[2], m[3]}, {m[2], m[3], m[4]}};
-    double c[3];
-    for (int k = 0; k < 3; ++k) {
-        double with[3][3];
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) {
-                with[i][j] = j == k ? r[i] : whole[i][j];
-            }
-        }
-        c[k] = determinant(with) / determinant(whole);  // Cramer
-    }
+    const std::array<double, 3> c = parabola(duty, set.values);
     set.table = "jet_flow [m^3/s], lift_force [N]\n";
     for (int k = 0; k <= 50; ++k) {
         const double d = 0.02 * k;

@@ -73,6 +73,63 @@ void plane_models(Study& study) {
     (void)same;
 }
 
+/// The printed covariance and basis, held against what follows from them.
+void printed_matrices(Study& study) {
+    const Matrix c = printed_covariance();
+    const Poles printed = eigenvalues(0.5 * (c + c.transposed()));
+    Vector first;
+    for (std::size_t i = 0; i < 5; ++i) {
+        first.push_back(printed[i].real());
+    }
+    study.claims.push_back({"7-C", "covariance of section 7.5",
+                            "The covariance matrix C with eigenvalues 4.6901 1.4913 1.1239 0.9986 0.6960",
+                            "as printed C is not symmetric (by " + number((c - c.transposed()).largest()) +
+                                ", column 7); its symmetric part has " + numbers(first, 5),
+                            "in part"});
+    const auto decimals = [](double value) { return std::round(1e5 * value) / 1e5; };  // as printed
+    const Matrix t = printed_basis();
+    const Matrix of_t = (t.block(5, 0, 4, 5) * pseudo_inverse(t.block(0, 0, 5, 5), 1e-6)).block(0, 1, 4, 4);
+    study.claims.push_back({"7-T", "basis of section 7.5", "The model A that follows from the printed T",
+                            "entries (w,w), (w,F_d), (h,w), (F_g,w), (F_g,F_g) of W S^# are " +
+                                numbers({decimals(of_t(0, 0)), decimals(of_t(0, 2)), decimals(of_t(1, 0)),
+                                         decimals(of_t(2, 0)), decimals(of_t(2, 2))},
+                                        5) +
+                                "; the printed matrix follows from them but for the ratios of deviations",
+                            "in part"});
+}
+/// Blocks of T.
+void claim_blocks(Study& study, const TrainingSet& two) {
+    const auto block = [&](std::size_t m) {
+        const Matrix t = scan_orders(moments(two.view()), two.layout, {})[m - 1].basis;
+        return t.block(5, 0, 4, m);
+    };
+    const Matrix w4 = block(4), w9 = block(9);
+    study.claims.push_back(
+        {"7.28", "7.25-7.28", "W'W = I at m = l, so the inverse does not exist there",
+         "max |W'W - I| at m = 4: " + number((w4.transposed() * w4 - Matrix::identity(4)).largest(), 3) +
+             "; it is W W' = I at m = 9 (" + number((w9 * w9.transposed() - Matrix::identity(4)).largest(), 2) + ")",
+         "does not reproduce"});
+}
+
+/// One factor on rows 1, 2 and 4 between 7.48 and the exact least-norm split.
+void claim_published(Study& study, const TrainingSet& one) {
+    const AugmentedModel printed748 = published_7_48();
+    const AugmentedModel exact = [&] {
+        LearnOptions o;
+        o.fit = Fit::method2;
+        o.order = 5;
+        return learn(moments(one.view()), one.layout, o);
+    }();
+    const Vector ratios{printed748.A(0, 0) / exact.A(0, 0), printed748.A(1, 0) / exact.A(1, 0),
+                        printed748.A(3, 2) / exact.A(3, 2)};
+    study.claims.push_back({"7.48", "7.48", "The matrix of the fifth-order model with linear drag",
+                            "the least-norm split gives rows 1, 2, 4 as (" + numbers(exact.A.row(0), 4) + "), (" +
+                                numbers(exact.A.row(1), 3) + "), (" + numbers(exact.A.row(3), 4) +
+                                "); printed over computed: " + numbers(ratios, 4) +
+                                ", one factor from inconsistent deviations",
+                            "in part"});
+}
+
 // 7-13 to 7-15 and the ranks.
 void spectra(Study& study) {
     const TrainingSet one = grid_samples(reference_plant(quadratic_drag(1.25, 0))),
@@ -106,54 +163,9 @@ void spectra(Study& study) {
          "eigenvalues 5 to 8: " + numbers({both.eigenvalues.begin() + 4, both.eigenvalues.begin() + 8}, 3) +
              "; the drop to nothing lies behind the 7th, the drop from 5th to 6th is as large as the next",
          "in part"});
-    const Matrix c = printed_covariance();
-    const Poles printed = eigenvalues(0.5 * (c + c.transposed()));
-    Vector first;
-    for (std::size_t i = 0; i < 5; ++i) {
-        first.push_back(printed[i].real());
-    }
-    study.claims.push_back({"7-C", "covariance of section 7.5",
-                            "The covariance matrix C with eigenvalues 4.6901 1.4913 1.1239 0.9986 0.6960",
-                            "as printed C is not symmetric (by " + number((c - c.transposed()).largest()) +
-                                ", column 7); its symmetric part has " + numbers(first, 5),
-                            "in part"});
-    const auto decimals = [](double value) { return std::round(1e5 * value) / 1e5; };  // as printed
-    const Matrix t = printed_basis();
-    const Matrix of_t = (t.block(5, 0, 4, 5) * pseudo_inverse(t.block(0, 0, 5, 5), 1e-6)).block(0, 1, 4, 4);
-    study.claims.push_back({"7-T", "basis of section 7.5", "The model A that follows from the printed T",
-                            "entries (w,w), (w,F_d), (h,w), (F_g,w), (F_g,F_g) of W S^# are " +
-                                numbers({decimals(of_t(0, 0)), decimals(of_t(0, 2)), decimals(of_t(1, 0)),
-                                         decimals(of_t(2, 0)), decimals(of_t(2, 2))},
-                                        5) +
-                                "; the printed matrix follows from them but for the ratios of deviations",
-                            "in part"});
-    // One factor on rows 1, 2 and 4 between 7.48 and the exact least-norm split.
-    const AugmentedModel printed748 = published_7_48();
-    const AugmentedModel exact = [&] {
-        LearnOptions o;
-        o.fit = Fit::method2;
-        o.order = 5;
-        return learn(moments(one.view()), one.layout, o);
-    }();
-    const Vector ratios{printed748.A(0, 0) / exact.A(0, 0), printed748.A(1, 0) / exact.A(1, 0),
-                        printed748.A(3, 2) / exact.A(3, 2)};
-    study.claims.push_back({"7.48", "7.48", "The matrix of the fifth-order model with linear drag",
-                            "the least-norm split gives rows 1, 2, 4 as (" + numbers(exact.A.row(0), 4) + "), (" +
-                                numbers(exact.A.row(1), 3) + "), (" + numbers(exact.A.row(3), 4) +
-                                "); printed over computed: " + numbers(ratios, 4) +
-                                ", one factor from inconsistent deviations",
-                            "in part"});
-    // Blocks of T.
-    const auto block = [&](std::size_t m) {
-        const Matrix t = scan_orders(moments(two.view()), two.layout, {})[m - 1].basis;
-        return t.block(5, 0, 4, m);
-    };
-    const Matrix w4 = block(4), w9 = block(9);
-    study.claims.push_back(
-        {"7.28", "7.25-7.28", "W'W = I at m = l, so the inverse does not exist there",
-         "max |W'W - I| at m = 4: " + number((w4.transposed() * w4 - Matrix::identity(4)).largest(), 3) +
-             "; it is W W' = I at m = 9 (" + number((w9 * w9.transposed() - Matrix::identity(4)).largest(), 2) + ")",
-         "does not reproduce"});
+    printed_matrices(study);
+    claim_published(study, one);
+    claim_blocks(study, two);
 }
 
 // 7-16 and table 7.1
@@ -228,6 +240,40 @@ void correlations(Study& study) {
          std::abs(r[1](7, 3)) > 0.03 ? "reproduces" : "does not reproduce"});
 }
 
+/// Every 40th sample of a set, and the motion.
+core::Figure samples_figure(const TrainingSet& set, const Motion& truth, const char* title) {
+    core::Figure f = plot(title, "Every 40th of 50,000 samples; line: the motion from 100 mm at rest.", "gap", "mm",
+                          "heave velocity", "mm/s");
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < set.count; i += 40) {
+        x.push_back(1e3 * set.at(i, 2));
+        y.push_back(1e3 * set.at(i, 1));
+    }
+    points(f, "samples", x, y, 0, core::FigurePoints::Shape::disc, 2);
+    std::vector<double> gap = truth.gap, speed = truth.velocity;
+    for (std::size_t k = 0; k < gap.size(); ++k) {
+        gap[k] *= 1e3;
+        speed[k] *= 1e3;
+    }
+    curve(f, "motion", gap, speed, 1);
+    return f;
+}
+
+/// Rates of both forces along a motion, by a model.
+struct RatesAlong {
+    std::vector<double> ground, drag;
+};
+
+RatesAlong rates_along(const AugmentedModel& m, const Motion& truth) {
+    std::vector<double> ground, drag;
+    for (std::size_t k = 0; k < truth.time.size(); ++k) {
+        const Vector d = m.derivative({truth.velocity[k], truth.gap[k], truth.ground[k], truth.drag[k]}, {0});
+        ground.push_back(d[2]);
+        drag.push_back(d[3]);
+    }
+    return {ground, drag};
+}
+
 // 7-18, 7-19: biased and uniform sampling, derivatives along a motion.
 void sampling(Study& study) {
     const SeparatedPlant plant = reference_plant();
@@ -250,29 +296,10 @@ void sampling(Study& study) {
     curve(drags, "nonlinear", truth.time, truth.drag_rate, 7, false, 1e3);
     for (const TrainingSet* set : {&biased, &dense}) {
         const bool first = set == &biased;
-        core::Figure f = plot(first ? "7-18 left: biased samples" : "7-18 right: uniform samples",
-                              "Every 40th of 50,000 samples; line: the motion from 100 mm at rest.", "gap", "mm",
-                              "heave velocity", "mm/s");
-        std::vector<double> x, y;
-        for (std::size_t i = 0; i < set->count; i += 40) {
-            x.push_back(1e3 * set->at(i, 2));
-            y.push_back(1e3 * set->at(i, 1));
-        }
-        points(f, "samples", x, y, 0, core::FigurePoints::Shape::disc, 2);
-        std::vector<double> gap = truth.gap, speed = truth.velocity;
-        for (std::size_t k = 0; k < gap.size(); ++k) {
-            gap[k] *= 1e3;
-            speed[k] *= 1e3;
-        }
-        curve(f, "motion", gap, speed, 1);
-        study.figures.emplace_back(first ? "7-18a" : "7-18b", f);
-        const AugmentedModel m = learn(moments(set->view()), set->layout);
-        std::vector<double> ground, drag;
-        for (std::size_t k = 0; k < truth.time.size(); ++k) {
-            const Vector d = m.derivative({truth.velocity[k], truth.gap[k], truth.ground[k], truth.drag[k]}, {0});
-            ground.push_back(d[2]);
-            drag.push_back(d[3]);
-        }
+        study.figures.emplace_back(
+            first ? "7-18a" : "7-18b",
+            samples_figure(*set, truth, first ? "7-18 left: biased samples" : "7-18 right: uniform samples"));
+        const auto [ground, drag] = rates_along(learn(moments(set->view()), set->layout), truth);
         curve(rates, first ? "biased, least squares" : "uniform, least squares", truth.time, ground, first ? 0 : 1,
               true, 1e3);
         curve(drags, first ? "biased, least squares" : "uniform, least squares", truth.time, drag, first ? 0 : 1, true,
@@ -288,6 +315,78 @@ void sampling(Study& study) {
                             errors[0] < 0.95 * errors[1] ? "reproduces" : "does not reproduce"});
 }
 
+/// Matrices of other training sets: along motions in time, and with forward differences.
+void other_training(Study& study) {
+    // 8.47's fourth row and the time-evolved matrix.
+    const TrainingSet time = time_samples(reference_plant());
+    const AugmentedModel t = learn(moments(time.view()), time.layout);
+    study.claims.push_back(
+        {"7.5-time", "section 7.5, time-evolved matrix",
+         "Rows 1 and 2 are (4.0987, ...), (1.1599, ...): nothing is interpretable",
+         "with exact derivatives the rows are (" + numbers(t.A.row(0), 4) + ") and (" + numbers(t.A.row(1), 4) + ")",
+         "does not reproduce"});
+    TrainingOptions d;
+    d.samples = 50000;
+    d.difference_step = 0.0024;
+    const TrainingSet differenced = training_set(reference_plant(), d);
+    const AugmentedModel f = learn(moments(differenced.view()), differenced.layout);
+    study.claims.push_back(
+        {"7.5-grid", "section 7.5, grid matrix", "Row 2 is (1, 0, 0.0003, -0.0003)",
+         "forward differences over 2.4 ms leave (" + numbers(f.A.row(1), 3) + "); exact derivatives leave zeros",
+         "reproduces"});
+}
+
+/// What the orders 1 to 7 show.
+struct OrdersSeen {
+    Vector at6, at7;
+    double worst = 0, sixth = 0, right = 0, apart = 0;
+};
+
+void claim_orders(Study& study, const OrdersSeen& seen) {
+    const auto& [at6, at7, worst, sixth, right, apart] = seen;
+    study.claims.push_back({"7-20-seven", "Figure 7-20", "From theory the required order is 7",
+                            "7 is the rank; as a model it leaves the forces' rates at relative errors " +
+                                numbers({at7[2], at7[3]}, 3) + " (rows 3 and 4 are zero)",
+                            "does not reproduce"});
+    study.claims.push_back({"7-20-six", "Figure 7-20", "Sixth order was sufficient for the system",
+                            "relative errors at order 6: dF_g " + number(at6[2], 3) + ", dF_d " + number(at6[3], 3) +
+                                "; dF_g is not explained at any order",
+                            "in part"});
+    study.claims.push_back({"7-22-anomaly", "Figures 7-21, 7-22",
+                            "An anomaly at orders 4 and 5, where W and S become square",
+                            "largest entry of A there: " + number(worst, 3) + " (order 6: " + number(sixth, 3) + ")",
+                            worst > 5 * sixth ? "reproduces" : "in part"});
+    study.claims.push_back({"7-21-right", "Figure 7-21",
+                            "Higher orders capture the instability and poles move to the right half plane",
+                            "largest real part at orders 6 and 7: " + number(right, 2) + " 1/s",
+                            right > 1e-4 ? "in part" : "does not reproduce"});
+    study.claims.push_back({"7-methods", "7.26, 7.36", "Method 2 avoids the inversion of Method 1",
+                            "both give the same matrix at every order: largest relative difference " + number(apart, 2),
+                            "does not reproduce"});
+}
+/// Relative errors of the derivatives and eigenvalues by order, and the poles.
+void draw_orders(Study& study, const std::vector<std::vector<double>>& rel,
+                 const std::vector<std::vector<double>>& sizes, core::Figure poles) {
+    core::Figure errors = plot("7-20: relative error of the derivatives against order",
+                               "rms over the deviation of each derivative; 1 means nothing is explained.", "order", "1",
+                               "relative rms error", "1");
+    errors.y.logarithmic = true;
+    core::Figure each =
+        plot("7-22: eigenvalues of A against order", "Size of each eigenvalue; orders 4 and 5 are nearly singular.",
+             "order", "1", "size of eigenvalue", "1/s");
+    each.y.logarithmic = true;
+    const char* names[] = {"dw", "dh", "dF_g", "dF_d"};
+    for (std::size_t i = 0; i < 4; ++i) {
+        curve(errors, names[i], counted(7), rel[i], i);
+        points(each, "eigenvalue " + std::to_string(i + 1), counted(7), sizes[i], i);
+    }
+    study.figures.emplace_back("7-20", errors);
+    poles.y.lower = -0.5;
+    poles.y.upper = 0.5;
+    study.figures.emplace_back("7-21", poles);
+    study.figures.emplace_back("7-22", each);
+}
+
 // 7-20 to 7-22: orders.
 void orders(Study& study) {
     const TrainingSet set = grid_samples(reference_plant());
@@ -296,19 +395,10 @@ void orders(Study& study) {
     two.fit = Fit::method2;
     one.fit = Fit::method1;
     const auto models = scan_orders(m, set.layout, two), others = scan_orders(m, set.layout, one);
-    core::Figure errors = plot("7-20: relative error of the derivatives against order",
-                               "rms over the deviation of each derivative; 1 means nothing is explained.", "order", "1",
-                               "relative rms error", "1");
-    errors.y.logarithmic = true;
     core::Figure poles =
         plot("7-21: poles of A against order",
              "Orders 1 to 7 of rank 7; poles beyond 6 1/s are left out. All poles are real or nearly so.", "real part",
              "1/s", "imaginary part", "1/s");
-    core::Figure each =
-        plot("7-22: eigenvalues of A against order", "Size of each eigenvalue; orders 4 and 5 are nearly singular.",
-             "order", "1", "size of eigenvalue", "1/s");
-    each.y.logarithmic = true;
-    const char* names[] = {"dw", "dh", "dF_g", "dF_d"};
     std::vector<std::vector<double>> rel(4), sizes(4);
     double apart = 0, worst = 0, right = -1e9;
     Vector at6, at7;
@@ -334,51 +424,9 @@ void orders(Study& study) {
             at6 = e;
         }
     }
-    for (std::size_t i = 0; i < 4; ++i) {
-        curve(errors, names[i], counted(7), rel[i], i);
-        points(each, "eigenvalue " + std::to_string(i + 1), counted(7), sizes[i], i);
-    }
-    study.figures.emplace_back("7-20", errors);
-    poles.y.lower = -0.5;
-    poles.y.upper = 0.5;
-    study.figures.emplace_back("7-21", poles);
-    study.figures.emplace_back("7-22", each);
-    study.claims.push_back({"7-20-seven", "Figure 7-20", "From theory the required order is 7",
-                            "7 is the rank; as a model it leaves the forces' rates at relative errors " +
-                                numbers({at7[2], at7[3]}, 3) + " (rows 3 and 4 are zero)",
-                            "does not reproduce"});
-    study.claims.push_back({"7-20-six", "Figure 7-20", "Sixth order was sufficient for the system",
-                            "relative errors at order 6: dF_g " + number(at6[2], 3) + ", dF_d " + number(at6[3], 3) +
-                                "; dF_g is not explained at any order",
-                            "in part"});
-    study.claims.push_back(
-        {"7-22-anomaly", "Figures 7-21, 7-22", "An anomaly at orders 4 and 5, where W and S become square",
-         "largest entry of A there: " + number(worst, 3) + " (order 6: " + number(models[5].A.largest(), 3) + ")",
-         worst > 5 * models[5].A.largest() ? "reproduces" : "in part"});
-    study.claims.push_back({"7-21-right", "Figure 7-21",
-                            "Higher orders capture the instability and poles move to the right half plane",
-                            "largest real part at orders 6 and 7: " + number(right, 2) + " 1/s",
-                            right > 1e-4 ? "in part" : "does not reproduce"});
-    study.claims.push_back({"7-methods", "7.26, 7.36", "Method 2 avoids the inversion of Method 1",
-                            "both give the same matrix at every order: largest relative difference " + number(apart, 2),
-                            "does not reproduce"});
-    // 8.47's fourth row and the time-evolved matrix.
-    const TrainingSet time = time_samples(reference_plant());
-    const AugmentedModel t = learn(moments(time.view()), time.layout);
-    study.claims.push_back(
-        {"7.5-time", "section 7.5, time-evolved matrix",
-         "Rows 1 and 2 are (4.0987, ...), (1.1599, ...): nothing is interpretable",
-         "with exact derivatives the rows are (" + numbers(t.A.row(0), 4) + ") and (" + numbers(t.A.row(1), 4) + ")",
-         "does not reproduce"});
-    TrainingOptions d;
-    d.samples = 50000;
-    d.difference_step = 0.0024;
-    const TrainingSet differenced = training_set(reference_plant(), d);
-    const AugmentedModel f = learn(moments(differenced.view()), differenced.layout);
-    study.claims.push_back(
-        {"7.5-grid", "section 7.5, grid matrix", "Row 2 is (1, 0, 0.0003, -0.0003)",
-         "forward differences over 2.4 ms leave (" + numbers(f.A.row(1), 3) + "); exact derivatives leave zeros",
-         "reproduces"});
+    draw_orders(study, rel, sizes, poles);
+    claim_orders(study, {at6, at7, worst, models[5].A.largest(), right, apart});
+    other_training(study);
 }
 
 }  // namespace

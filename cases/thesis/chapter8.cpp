@@ -61,6 +61,22 @@ double total_error(const AugmentedModel& m, const Poles& poles = {{-1, 0}, {-2, 
     return std::sqrt(sum / n);
 }
 
+/// Latent variables with their estimates, and the differences.
+std::pair<core::Figure, core::Figure> latent_figures(const Motion& m,
+                                                     const std::vector<std::vector<double>>& latent_truth,
+                                                     const std::vector<std::vector<double>>& latent,
+                                                     const char* words) {
+    core::Figure variables = plot("8-2: estimates of the latent variables", words, "time", "s", "z", "1");
+    core::Figure misses = plot("8-3: errors of the latent variables", words, "time", "s", "error of z", "1");
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::string name = "z" + std::to_string(i + 1);
+        curve(variables, name, m.time, latent_truth[i], i);
+        curve(variables, name + " estimated", m.time, latent[i], i, true);
+        curve(misses, name, m.time, difference(latent_truth[i], latent[i]), i);
+    }
+    return {variables, misses};
+}
+
 // 8-2, 8-3: states and latent variables by the full-order observer in rotated coordinates.
 void converging_states(Study& study, const Motion& m) {
     const std::vector<std::string> sensors{"heave_velocity", "gap"};
@@ -100,14 +116,7 @@ void converging_states(Study& study, const Motion& m) {
         curve(states, std::string(names[i]) + " estimated", m.time, state[i], i == 1 ? 0 : 1, true, 1e3);
         curve(errors, names[i], m.time, difference(truth[i], state[i]), i == 1 ? 0 : 1, false, 1e3);
     }
-    core::Figure variables = plot("8-2: estimates of the latent variables", words, "time", "s", "z", "1");
-    core::Figure misses = plot("8-3: errors of the latent variables", words, "time", "s", "error of z", "1");
-    for (std::size_t i = 0; i < 4; ++i) {
-        const std::string name = "z" + std::to_string(i + 1);
-        curve(variables, name, m.time, latent_truth[i], i);
-        curve(variables, name + " estimated", m.time, latent[i], i, true);
-        curve(misses, name, m.time, difference(latent_truth[i], latent[i]), i);
-    }
+    const auto [variables, misses] = latent_figures(m, latent_truth, latent, words);
     study.figures.emplace_back("8-2b", states);
     study.figures.emplace_back("8-2c", variables);
     study.figures.emplace_back("8-3b", errors);
@@ -262,6 +271,48 @@ void noise_gains(Study& study) {
                             "in part"});
 }
 
+core::Figure matrix_figure(const AugmentedModel& model, const std::string& title) {
+    core::Figure f =
+        plot(title, "Rows dw, dh, dF_g, dF_d over w, h, F_g, F_d (upwards: the rows).", "column", "1", "row", "1");
+    core::FigureMap map;
+    map.columns = map.rows = 4;
+    map.x_lower = map.y_lower = .5;
+    map.x_upper = map.y_upper = 4.5;
+    map.diverging = true;
+    map.label = "entry";
+    map.unit = "1";
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            map.values.push_back(model.A(i, j));
+            char text[24];
+            std::snprintf(text, sizeof text, "%.4f", model.A(i, j));
+            f.notes.push_back({static_cast<double>(j + 1), static_cast<double>(i + 1), text});
+        }
+    }
+    f.maps.push_back(map);
+    return f;
+}
+
+/// High gain, and what the total force rests on without and with innovation.
+void correction_limits(Study& study, const AugmentedModel& base, const Motion& m) {
+    const AugmentedModel p4 = corrected(base, Correction::p4, rows());
+    high_gain(study, p4, m);
+    study.claims.push_back(
+        {"8-9", "Figure 8-9", "With matrix (4) the total converges but the separate forces underperform",
+         "J_x21 = 0 there, so b_eff = " + number(separability(p4).b_eff, 3) + " and F_d_hat goes to 0 at slow drift",
+         "reproduces"});
+    const SteadyState s = steady_state(base.j_x(), base.j_zeta(), {0, 1.5});
+    const AugmentedModel p2 = corrected(base, Correction::p2, rows());
+    const Matrix l = reduced_gain(p2, {{-1, 0}, {-2, 0}});
+    const SteadyState with = steady_state(p2.j_x() - l * p2.a_x(), p2.j_zeta() - l * p2.a_zeta(), {0, 1.5});
+    study.claims.push_back({"8-steady", "8.57-8.66", "Convergence of the total force is guaranteed in either case",
+                            "without innovation at h = 1.5 m the forces settle at (" + numbers(s.limit, 3) +
+                                ") N after some " + number(s.slowest_time, 4) + " s, total " +
+                                number(s.limit[0] - s.limit[1], 3) + " N; with poles -1, -2: total " +
+                                number(with.limit[0] - with.limit[1], 1) + " N",
+                            "does not reproduce"});
+}
+
 // 8-7 to 8-9: corrections.
 void corrections(Study& study) {
     const AugmentedModel base = published_8_47();
@@ -278,25 +329,7 @@ void corrections(Study& study) {
     curve(split, "F_d", m.time, m.drag, 7, false, 1e3);
     for (int c = 0; c < 4; ++c) {
         const AugmentedModel model = corrected(base, static_cast<Correction>(c), rows());
-        core::Figure f =
-            plot("8-7: matrix " + std::string(names[c]),
-                 "Rows dw, dh, dF_g, dF_d over w, h, F_g, F_d (upwards: the rows).", "column", "1", "row", "1");
-        core::FigureMap map;
-        map.columns = map.rows = 4;
-        map.x_lower = map.y_lower = .5;
-        map.x_upper = map.y_upper = 4.5;
-        map.diverging = true;
-        map.label = "entry";
-        map.unit = "1";
-        for (std::size_t i = 0; i < 4; ++i) {
-            for (std::size_t j = 0; j < 4; ++j) {
-                map.values.push_back(model.A(i, j));
-                char text[24];
-                std::snprintf(text, sizeof text, "%.4f", model.A(i, j));
-                f.notes.push_back({static_cast<double>(j + 1), static_cast<double>(i + 1), text});
-            }
-        }
-        f.maps.push_back(map);
+        core::Figure f = matrix_figure(model, "8-7: matrix " + std::string(names[c]));
         study.figures.emplace_back(std::string("8-7") + static_cast<char>('a' + c), f);
         const double e = total_error(model);
         words += (words.empty() ? "" : ", ") + (std::isnan(e) ? std::string("none") : number(1e3 * e, 3));
@@ -316,22 +349,37 @@ void corrections(Study& study) {
                             "Correcting known rows and the gap column lessens the error of the total force",
                             "rms error of F_T for matrices 1 to 4: " + words + " mN",
                             error[2] <= error[0] ? "reproduces" : "does not reproduce"});
-    const AugmentedModel p4 = corrected(base, Correction::p4, rows());
-    high_gain(study, p4, m);
+    correction_limits(study, base, m);
+}
+
+void claim_regions(Study& study, const std::vector<std::string>& labels, const std::vector<double>& grid_error,
+                   const std::vector<double>& time_error) {
+    const auto spread = [](const std::vector<double>& v) {
+        double low = core::no_limit, high = 0;
+        for (const double e : v) {
+            low = e > 0 ? std::min(low, e) : low;
+            high = std::max(high, e);
+        }
+        return high / low;
+    };
+    study.claims.push_back({"8-10", "Figure 8-10",
+                            "Grid models are robust over most regions; the error grows when negative h is included; 0 "
+                            "to 1.2 m is appropriate",
+                            "rms error of F_T for " + std::string("regions ") +
+                                [&] {
+                                    std::string t;
+                                    for (const auto& s : labels) {
+                                        t += (t.empty() ? "" : ", ") + s;
+                                    }
+                                    return t;
+                                }() +
+                                ": " + numbers(grid_error, 3) + " mN (0: none); largest over least " +
+                                number(spread(grid_error), 3),
+                            spread(grid_error) < 2 ? "in part" : "does not reproduce"});
     study.claims.push_back(
-        {"8-9", "Figure 8-9", "With matrix (4) the total converges but the separate forces underperform",
-         "J_x21 = 0 there, so b_eff = " + number(separability(p4).b_eff, 3) + " and F_d_hat goes to 0 at slow drift",
-         "reproduces"});
-    const SteadyState s = steady_state(base.j_x(), base.j_zeta(), {0, 1.5});
-    const AugmentedModel p2 = corrected(base, Correction::p2, rows());
-    const Matrix l = reduced_gain(p2, {{-1, 0}, {-2, 0}});
-    const SteadyState with = steady_state(p2.j_x() - l * p2.a_x(), p2.j_zeta() - l * p2.a_zeta(), {0, 1.5});
-    study.claims.push_back({"8-steady", "8.57-8.66", "Convergence of the total force is guaranteed in either case",
-                            "without innovation at h = 1.5 m the forces settle at (" + numbers(s.limit, 3) +
-                                ") N after some " + number(s.slowest_time, 4) + " s, total " +
-                                number(s.limit[0] - s.limit[1], 3) + " N; with poles -1, -2: total " +
-                                number(with.limit[0] - with.limit[1], 1) + " N",
-                            "does not reproduce"});
+        {"8-11", "Figure 8-11", "Time-evolved models are very sensitive to the region",
+         numbers(time_error, 3) + " mN (0: none); largest over least " + number(spread(time_error), 3),
+         spread(time_error) > 2 * spread(grid_error) ? "reproduces" : "does not reproduce"});
 }
 
 // 8-10, 8-11: training regions.
@@ -369,32 +417,44 @@ void regions(Study& study) {
     };
     bars("8-10", "8-10: training region, grid data with P3", grid_error);
     bars("8-11", "8-11: training region, time-evolved data uncorrected", time_error);
-    const auto spread = [](const std::vector<double>& v) {
-        double low = core::no_limit, high = 0;
-        for (const double e : v) {
-            low = e > 0 ? std::min(low, e) : low;
-            high = std::max(high, e);
-        }
-        return high / low;
-    };
-    study.claims.push_back({"8-10", "Figure 8-10",
-                            "Grid models are robust over most regions; the error grows when negative h is included; 0 "
-                            "to 1.2 m is appropriate",
-                            "rms error of F_T for " + std::string("regions ") +
-                                [&] {
-                                    std::string t;
-                                    for (const auto& s : labels) {
-                                        t += (t.empty() ? "" : ", ") + s;
-                                    }
-                                    return t;
-                                }() +
-                                ": " + numbers(grid_error, 3) + " mN (0: none); largest over least " +
-                                number(spread(grid_error), 3),
-                            spread(grid_error) < 2 ? "in part" : "does not reproduce"});
-    study.claims.push_back(
-        {"8-11", "Figure 8-11", "Time-evolved models are very sensitive to the region",
-         numbers(time_error, 3) + " mN (0: none); largest over least " + number(spread(time_error), 3),
-         spread(time_error) > 2 * spread(grid_error) ? "reproduces" : "does not reproduce"});
+    claim_regions(study, labels, grid_error, time_error);
+}
+
+/// s: from then on the error stays below 2 % of its first value.
+double settling_time(const Motion& m, const std::vector<double>& e) {
+    std::size_t last = 0;
+    for (std::size_t k = 0; k < e.size(); ++k) {
+        last = std::abs(e[k]) > 0.02 * std::abs(e.front()) ? k : last;
+    }
+    return m.time[last];
+}
+
+// 8-13: performance ratio.
+void performance_ratios(Study& study, const AugmentedModel& model, const Motion& m) {
+    // 8-13: performance ratio.
+    core::Figure g =
+        plot("8-13: performance ratio",
+             "P3 of 8.47 with J_zeta scaled, poles not moved (no innovation gain beyond -1, -2 of the nominal).",
+             "time", "s", "error of F_T", "mN");
+    std::string words;
+    std::size_t colour = 0;
+    const Matrix gain = reduced_gain(model, {{-1, 0}, {-2, 0}});
+    for (const double factor : {0.5, 1.0, 2.0}) {
+        AugmentedModel scaled = model;
+        scaled.A.set_block(2, 2, factor * model.j_zeta());
+        const auto e = difference(m.total(), follow(reduced_observer(scaled, gain, step).filter, m).total);
+        curve(g, "psi = " + number(performance_ratio(scaled.j_zeta(), scaled.j_x()), 3), m.time, e, colour++, false,
+              1e3);
+        words += (words.empty() ? "" : ", ") + number(settling_time(m, e), 3);
+    }
+    study.figures.emplace_back("8-13", g);
+    study.claims.push_back({"8-psi", "8.68", "A larger ratio of J_zeta to J_x converges faster",
+                            "psi of the published matrices " +
+                                numbers({performance_ratio(published_8_47().j_zeta(), published_8_47().j_x()),
+                                         performance_ratio(published_grid().j_zeta(), published_grid().j_x())},
+                                        4) +
+                                "; settling for J_zeta times 0.5, 1, 2: " + words + " s",
+                            "in part"});
 }
 
 // 8-12: estimated states for the update, or the true ones.
@@ -416,42 +476,13 @@ void update_methods(Study& study) {
     curve(f, "method 1", m.time, e1, 1, false, 1e3);
     curve(f, "method 2", m.time, e2, 0, false, 1e3);
     study.figures.emplace_back("8-12", f);
-    const auto settle = [&](const std::vector<double>& e) {
-        std::size_t last = 0;
-        for (std::size_t k = 0; k < e.size(); ++k) {
-            last = std::abs(e[k]) > 0.02 * std::abs(e.front()) ? k : last;
-        }
-        return m.time[last];
-    };
+    const auto settle = [&](const std::vector<double>& e) { return settling_time(m, e); };
     study.claims.push_back({"8-12", "Figure 8-12", "Using the true states for the update converges faster",
                             "2 % settling of F_T: " + number(settle(e1), 3) + " s by method 1, " +
                                 number(settle(e2), 3) +
                                 " s by method 2; method 2 is the reduced observer, whose xi form needs no derivative",
                             settle(e2) < settle(e1) ? "reproduces" : "does not reproduce"});
-    // 8-13: performance ratio.
-    core::Figure g =
-        plot("8-13: performance ratio",
-             "P3 of 8.47 with J_zeta scaled, poles not moved (no innovation gain beyond -1, -2 of the nominal).",
-             "time", "s", "error of F_T", "mN");
-    std::string words;
-    std::size_t colour = 0;
-    const Matrix gain = reduced_gain(model, {{-1, 0}, {-2, 0}});
-    for (const double factor : {0.5, 1.0, 2.0}) {
-        AugmentedModel scaled = model;
-        scaled.A.set_block(2, 2, factor * model.j_zeta());
-        const auto e = difference(m.total(), follow(reduced_observer(scaled, gain, step).filter, m).total);
-        curve(g, "psi = " + number(performance_ratio(scaled.j_zeta(), scaled.j_x()), 3), m.time, e, colour++, false,
-              1e3);
-        words += (words.empty() ? "" : ", ") + number(settle(e), 3);
-    }
-    study.figures.emplace_back("8-13", g);
-    study.claims.push_back({"8-psi", "8.68", "A larger ratio of J_zeta to J_x converges faster",
-                            "psi of the published matrices " +
-                                numbers({performance_ratio(published_8_47().j_zeta(), published_8_47().j_x()),
-                                         performance_ratio(published_grid().j_zeta(), published_grid().j_x())},
-                                        4) +
-                                "; settling for J_zeta times 0.5, 1, 2: " + words + " s",
-                            "in part"});
+    performance_ratios(study, model, m);
 }
 
 std::string bounds_text(const Matrix& m, const Matrix& structure = {}) {
