@@ -153,6 +153,33 @@ std::string facet_error(const geometry::Body& body) {
            rounded(geometry::standard_gravity * body.density * body.volume_left_out, 2) + " N) more";
 }
 
+void print_trim(const geometry::Trim& t, Shell& shell) {
+    shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
+                (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
+                                rounded(t.righting_stiffness, 4) + " N m/rad"
+                 : t.neutral ? std::string("neutral: the centre of gravity is the centre of buoyancy, it stays as "
+                                           "it is turned")
+                             : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
+}
+
+void print_added_mass(const geometry::Body& body, Shell& shell) {
+    const auto& a = body.added_mass->matrix;
+    shell.print("added mass  surge " + rounded(a[0][0], 4) + ", sway " + rounded(a[1][1], 4) + ", heave " +
+                rounded(a[2][2], 4) + " kg; roll " + rounded(a[3][3], 4) + ", pitch " + rounded(a[4][4], 4) + ", yaw " +
+                rounded(a[5][5], 4) + " kg m^2" +
+                (body.placement ? " at a gap of " + rounded(1e3 * body.placement->gap, 4) + " mm" : " in free water"));
+    const geometry::Vec3& about = body.added_mass->reference;
+    std::string line = "            moments about the " +
+                       std::string(body.trim ? "centre of gravity" : "centroid of the volume") + " (" + mm(about.x) +
+                       ", " + mm(about.y) + ", " + mm(about.z) + ") mm; " + std::to_string(body.added_mass->panels) +
+                       " panels";
+    if (body.added_mass->fit) {
+        line += " made from the triangles, off them by " + rounded(1e3 * body.added_mass->fit->distance_rms, 3) +
+                " mm (RMS), " + rounded(1e3 * body.added_mass->fit->distance_largest, 3) + " mm at most";
+    }
+    shell.print(line);
+}
+
 void print_body(const geometry::Body& body, Shell& shell) {
     const geometry::MassProperties& mass = body.mass;
     const geometry::Certificate& quality = body.certificate;
@@ -187,30 +214,10 @@ void print_body(const geometry::Body& body, Shell& shell) {
                     mm(body.ballast->z) + " mm; the trim below is with it there");
     }
     if (body.trim) {
-        const geometry::Trim& t = *body.trim;
-        shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
-                    (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
-                                    rounded(t.righting_stiffness, 4) + " N m/rad"
-                     : t.neutral ? std::string("neutral: the centre of gravity is the centre of buoyancy, it stays as "
-                                               "it is turned")
-                                 : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));
+        print_trim(*body.trim, shell);
     }
     if (body.added_mass) {
-        const auto& a = body.added_mass->matrix;
-        shell.print(
-            "added mass  surge " + rounded(a[0][0], 4) + ", sway " + rounded(a[1][1], 4) + ", heave " +
-            rounded(a[2][2], 4) + " kg; roll " + rounded(a[3][3], 4) + ", pitch " + rounded(a[4][4], 4) + ", yaw " +
-            rounded(a[5][5], 4) + " kg m^2" +
-            (body.placement ? " at a gap of " + rounded(1e3 * body.placement->gap, 4) + " mm" : " in free water"));
-        const geometry::Vec3& about = body.added_mass->reference;
-        line = "            moments about the " +
-               std::string(body.trim ? "centre of gravity" : "centroid of the volume") + " (" + mm(about.x) + ", " +
-               mm(about.y) + ", " + mm(about.z) + ") mm; " + std::to_string(body.added_mass->panels) + " panels";
-        if (body.added_mass->fit) {
-            line += " made from the triangles, off them by " + rounded(1e3 * body.added_mass->fit->distance_rms, 3) +
-                    " mm (RMS), " + rounded(1e3 * body.added_mass->fit->distance_largest, 3) + " mm at most";
-        }
-        shell.print(line);
+        print_added_mass(body, shell);
     }
     for (const std::string& remark : body.remarks) {
         shell.print("remark      " + remark);
@@ -227,56 +234,8 @@ void print_body(const geometry::Body& body, Shell& shell) {
     }
 }
 
-int make_body(const MakeOptions& o, Shell& shell) {
-    if (!o.out.empty()) {
-        geometry::mesh_format_of(o.out);  // a wrong ending is told before the work
-    }
-    for (const std::string& file : {o.as, o.out, o.picture, o.section, o.underside, o.gap_picture, o.area_curve}) {
-        Shell::will_write(file);
-    }
-    geometry::BodyOptions options = o.input.options();
-    for (const auto& [option, value] : {std::pair{"--gap-picture", &o.gap_picture}, {"--area-curve", &o.area_curve}}) {
-        if (!value->empty() && !options.placement) {
-            throw core::UsageError("missing", std::string(option) + " needs a height over the ground", {},
-                                   "add --gap 5mm");
-        }
-    }
-    if (!o.area_up_to.empty()) {
-        options.underside_up_to = positive(o.area_up_to, "m", "--area-up-to");
-    }
-    if (!o.ballast.empty()) {
-        options.ballast = geometry::BallastWish{o.ballast, option_value("--trim-pitch", o.trim_pitch, "rad"),
-                                                option_value("--trim-roll", o.trim_roll, "rad")};
-    }
-    for (const auto& assignment : o.set) {
-        options.set.push_back(name_and_value("--set", assignment));
-    }
-    geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
-    if (!o.as.empty()) {
-        if (!body.shape) {
-            throw core::UsageError("shape", "--as writes a SHAPE.toml, and a surface is none");
-        }
-        geometry::BodyShape shape = *body.shape;
-        shape.name = std::filesystem::path(o.as).stem().string();
-        core::write_file(o.as, geometry::write_shape(shape));
-    }
-    if (const std::string doubt = options.placement ? o.input.doubt(body.mesh) : std::string(); !doubt.empty()) {
-        body.remarks.push_back(doubt);
-    }
-    shell.progress().report(1, "done");
+void write_pictures(const MakeOptions& o, const geometry::Body& body) {
     const geometry::SurfaceMesh& made = body.mesh;
-    const geometry::SurfaceMesh placed =
-        body.placement ? geometry::placed(made, *body.placement) : geometry::SurfaceMesh{};
-    const geometry::SurfaceMesh& shown = body.placement ? placed : made;
-    shell.hand_over(shown);
-    nlohmann::json document = body;
-    if (!o.out.empty()) {
-        const geometry::MeshFormat format = geometry::mesh_format_of(o.out);
-        const bool ascii = o.ascii && format == geometry::MeshFormat::stl_binary;
-        geometry::write_mesh(shown, o.out, ascii ? geometry::MeshFormat::stl_ascii : format,
-                             1 / core::convert(1, o.out_unit, "m"));
-        document["file"] = o.out;
-    }
     if (!o.picture.empty()) {
         core::write_file(o.picture, picture_of(body, made));
     }
@@ -296,6 +255,68 @@ int make_body(const MakeOptions& o, Shell& shell) {
             write_picture(geometry::figure(*body.underside), o.area_curve);
         }
     }
+}
+
+geometry::BodyOptions options_of(const MakeOptions& o) {
+    geometry::BodyOptions options = o.input.options();
+    for (const auto& [option, value] : {std::pair{"--gap-picture", &o.gap_picture}, {"--area-curve", &o.area_curve}}) {
+        if (!value->empty() && !options.placement) {
+            throw core::UsageError("missing", std::string(option) + " needs a height over the ground", {},
+                                   "add --gap 5mm");
+        }
+    }
+    if (!o.area_up_to.empty()) {
+        options.underside_up_to = positive(o.area_up_to, "m", "--area-up-to");
+    }
+    if (!o.ballast.empty()) {
+        options.ballast = geometry::BallastWish{o.ballast, option_value("--trim-pitch", o.trim_pitch, "rad"),
+                                                option_value("--trim-roll", o.trim_roll, "rad")};
+    }
+    for (const auto& assignment : o.set) {
+        options.set.push_back(name_and_value("--set", assignment));
+    }
+    return options;
+}
+
+void write_shape_as(const std::string& file, const geometry::Body& body) {
+    if (!body.shape) {
+        throw core::UsageError("shape", "--as writes a SHAPE.toml, and a surface is none");
+    }
+    geometry::BodyShape shape = *body.shape;
+    shape.name = std::filesystem::path(file).stem().string();
+    core::write_file(file, geometry::write_shape(shape));
+}
+
+int make_body(const MakeOptions& o, Shell& shell) {
+    if (!o.out.empty()) {
+        geometry::mesh_format_of(o.out);  // a wrong ending is told before the work
+    }
+    for (const std::string& file : {o.as, o.out, o.picture, o.section, o.underside, o.gap_picture, o.area_curve}) {
+        Shell::will_write(file);
+    }
+    const geometry::BodyOptions options = options_of(o);
+    geometry::Body body = geometry::read_body(o.input.shape, options, shell.progress());
+    if (!o.as.empty()) {
+        write_shape_as(o.as, body);
+    }
+    if (const std::string doubt = options.placement ? o.input.doubt(body.mesh) : std::string(); !doubt.empty()) {
+        body.remarks.push_back(doubt);
+    }
+    shell.progress().report(1, "done");
+    const geometry::SurfaceMesh& made = body.mesh;
+    const geometry::SurfaceMesh placed =
+        body.placement ? geometry::placed(made, *body.placement) : geometry::SurfaceMesh{};
+    const geometry::SurfaceMesh& shown = body.placement ? placed : made;
+    shell.hand_over(shown);
+    nlohmann::json document = body;
+    if (!o.out.empty()) {
+        const geometry::MeshFormat format = geometry::mesh_format_of(o.out);
+        const bool ascii = o.ascii && format == geometry::MeshFormat::stl_binary;
+        geometry::write_mesh(shown, o.out, ascii ? geometry::MeshFormat::stl_ascii : format,
+                             1 / core::convert(1, o.out_unit, "m"));
+        document["file"] = o.out;
+    }
+    write_pictures(o, body);
     if (shell.json) {
         shell.print_json(document);
     } else {

@@ -127,6 +127,56 @@ std::string mesh_text(const geometry::BlockMesh& mesh) {
            rounded(q.largest_skewness, 3) + ", y+ about " + rounded(mesh.wall_units_mean, 2);
 }
 
+/// Of blocks or cut out of a background (snappy); blocks need a shape of the family.
+bool by_blocks(const DomainCommand& o, const geometry::Body& body) {
+    const bool blocks = o.solver == "openfoam" && (o.mesher.empty() ? body.shape.has_value() : o.mesher == "blocks");
+    if (o.flow.jet_flow != 0 && !blocks) {
+        throw core::UsageError("choice", "a jet needs a mesh of blocks for OpenFOAM", {}, "--mesher blocks");
+    }
+    if (blocks && !body.shape) {
+        throw core::UsageError("choice", "blocks are for bodies of the family, which a SHAPE.toml describes", {},
+                               "--mesher snappy takes any surface");
+    }
+    if (body.shape && geometry::tail_plate(*body.shape) != nullptr && !blocks) {
+        throw core::UsageError("mesh",
+                               "the body '" + body.shape->name + "' has a tail plate, which blocks alone can mesh", {},
+                               "--solver openfoam --mesher blocks, or a shape without [tail_plate]");
+    }
+    return blocks;
+}
+
+nlohmann::json json_of(const DomainCommand& o, const geometry::FlowDomain& domain,
+                       const std::optional<geometry::BlockCase>& made,
+                       const std::vector<std::filesystem::path>& files) {
+    const bool blocks = made.has_value();
+    nlohmann::json document{{"solver", o.solver},
+                            {"folder", o.out},
+                            {"boundaries", blocks ? boundaries_of(*made) : domain.boundaries},
+                            {"walls", domain.walls},
+                            {"cells_in_gap", blocks ? made->mesh.cells_in_gap : domain.cells_in_gap},
+                            {"clearance", domain.clearance},
+                            {"files", nlohmann::json::array()}};
+    for (const auto& file : files) {
+        document["files"].push_back(file.string());
+    }
+    if (o.solver == "openfoam") {
+        document["mesher"] = blocks ? "blocks" : "snappy";
+        document["mesh"] = blocks ? nlohmann::json(made->mesh) : nlohmann::json(nullptr);
+    }
+    return document;
+}
+
+void show_doubts(Shell& shell, const DomainCommand& o, const geometry::Body& body, const geometry::FlowDomain& domain,
+                 bool blocks) {
+    if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
+        shell.show_warning(doubt);
+    }
+    if (domain.cells_in_gap < 3 && o.solver == "openfoam" && !blocks) {
+        shell.show_warning("only " + rounded(domain.cells_in_gap, 2) +
+                           " cells across the smallest clearance: choose a smaller --cell");
+    }
+}
+
 int write_domain(DomainCommand& o, Shell& shell) {
     const auto placement = o.input.placement();
     if (!placement) {
@@ -142,19 +192,7 @@ int write_domain(DomainCommand& o, Shell& shell) {
     o.flow.half = !o.whole;
     o.flow.jet_flow = option_value("--jet-flow", o.jet, "m^3/s");
     const geometry::FlowDomain domain = geometry::flow_domain(body.mesh, o.flow);
-    const bool blocks = o.solver == "openfoam" && (o.mesher.empty() ? body.shape.has_value() : o.mesher == "blocks");
-    if (o.flow.jet_flow != 0 && !blocks) {
-        throw core::UsageError("choice", "a jet needs a mesh of blocks for OpenFOAM", {}, "--mesher blocks");
-    }
-    if (blocks && !body.shape) {
-        throw core::UsageError("choice", "blocks are for bodies of the family, which a SHAPE.toml describes", {},
-                               "--mesher snappy takes any surface");
-    }
-    if (body.shape && geometry::tail_plate(*body.shape) != nullptr && !blocks) {
-        throw core::UsageError("mesh",
-                               "the body '" + body.shape->name + "' has a tail plate, which blocks alone can mesh", {},
-                               "--solver openfoam --mesher blocks, or a shape without [tail_plate]");
-    }
+    const bool blocks = by_blocks(o, body);
     o.flow.mesher = blocks ? geometry::CaseMesher::blocks : geometry::CaseMesher::snappy;
     o.flow.mesh_density = named<geometry::MeshDensity>(geometry::density_names(), o.density);
     std::optional<geometry::BlockCase> made;
@@ -166,27 +204,8 @@ int write_domain(DomainCommand& o, Shell& shell) {
         files = o.solver == "openfoam" ? geometry::write_openfoam_case(body.mesh, o.flow, o.out)
                                        : geometry::write_ansys_case(body.mesh, o.flow, o.out);
     }
-    if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
-        shell.show_warning(doubt);
-    }
-    if (domain.cells_in_gap < 3 && o.solver == "openfoam" && !blocks) {
-        shell.show_warning("only " + rounded(domain.cells_in_gap, 2) +
-                           " cells across the smallest clearance: choose a smaller --cell");
-    }
-    nlohmann::json document{{"solver", o.solver},
-                            {"folder", o.out},
-                            {"boundaries", blocks ? boundaries_of(*made) : domain.boundaries},
-                            {"walls", domain.walls},
-                            {"cells_in_gap", blocks ? made->mesh.cells_in_gap : domain.cells_in_gap},
-                            {"clearance", domain.clearance},
-                            {"files", nlohmann::json::array()}};
-    for (const auto& file : files) {
-        document["files"].push_back(file.string());
-    }
-    if (o.solver == "openfoam") {
-        document["mesher"] = blocks ? "blocks" : "snappy";
-        document["mesh"] = blocks ? nlohmann::json(made->mesh) : nlohmann::json(nullptr);
-    }
+    show_doubts(shell, o, body, domain, blocks);
+    const nlohmann::json document = json_of(o, domain, made, files);
     if (shell.json) {
         shell.print_json(document);
     } else {

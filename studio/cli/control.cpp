@@ -130,21 +130,7 @@ std::vector<std::string> made_from(const ControlArguments& a) {
     return lines;
 }
 
-int run_control(const ControlArguments& a, Shell& shell) {
-    for (const std::string& file : {a.out, a.plot, a.region, a.export_c}) {
-        Shell::will_write(file);
-    }
-    const dynamics::Model model = dynamics::read_model(a.model);
-    dynamics::Conditions held;
-    for (const auto& v :
-         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
-        held.set(v.name, v.value);
-    }
-    const std::vector<std::string> warnings = show_table_warnings(shell, model, held);
-    const SeparatedPlant plant = separate(model, held);
-    shell.show(plant.remarks);
-    ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
-    law.limit = quantity("--limit", a.limit, "N", INFINITY);
+LoopOptions loop_options(const ControlArguments& a, double reference_gap) {
     LoopOptions o;
     o.step = option_value("--step", a.step, "s");
     o.duration = option_value("--for", a.duration, "s");
@@ -161,13 +147,19 @@ int run_control(const ControlArguments& a, Shell& shell) {
         const double constant = option_value("--disturbance", a.disturbance, "N");
         o.disturbance = [constant](double) { return constant; };
     }
-    o.gap = law.reference_gap;
+    o.gap = reference_gap;
     for (const core::NamedValue& v : core::parse_assignments(a.from)) {
         if (v.name != "gap" && v.name != "heave_velocity") {
             throw core::UsageError("name", "--from knows gap and heave_velocity, not '" + v.name + "'");
         }
         (v.name == "gap" ? o.gap : o.velocity) = v.value;
     }
+    return o;
+}
+
+/// What cannot be held, or not by this limit.
+void check(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopOptions& o,
+           Shell& shell) {
     if (!(law.reference_gap > plant.contact_gap)) {
         throw core::UsageError("range", "--hold " + a.hold +
                                             " is no gap that can be held: the vehicle touches the ground at " +
@@ -193,32 +185,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
         throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {},
                                core::did_you_mean(a.observer, known));
     }
-    if (a.compare && !a.export_c.empty()) {
-        throw core::UsageError("option", "--export-c writes one controller, --compare compares them all", {},
-                               "leave one of them out");
-    }
-    if (a.compare) {
-        std::string text;
-        const nlohmann::json list = compare_estimators(a, plant, law, o, text);
-        if (shell.json) {
-            shell.print_json({{"estimators", list}, {"warnings", warnings}});
-        }
-        shell.print(text);
-        return ExitCode::done;
-    }
-    const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
-    const LoopRun loop = close_loop(plant, law, estimator, o);
-    shell.hand_over("motion", [&] { return loop.table(); });
-    if (!a.export_c.empty()) {
-        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
-        core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a)));
-    }
-    if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), loop.table());
-    }
-    if (!a.plot.empty()) {
-        write_picture(figure_of(loop, law.reference_gap), a.plot);
-    }
+}
+
+nlohmann::json json_of(const LoopRun& loop, const SeparatedPlant& plant, const ControlLaw& law,
+                       const ControlArguments& a, const std::vector<std::string>& warnings) {
     nlohmann::json json = loop;
     json["warnings"] = warnings;
     json["velocity_gain"] = law.velocity_gain;
@@ -229,6 +199,63 @@ int run_control(const ControlArguments& a, Shell& shell) {
     }
     json["hold_without_cancellation"] = points;
     json["observer"] = a.observer;
+    return json;
+}
+
+void write_files(const ControlArguments& a, const LoopRun& loop, const SeparatedPlant& plant, const ControlLaw& law,
+                 const LoopEstimator& estimator, const LoopOptions& o) {
+    if (!a.export_c.empty()) {
+        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
+        core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a)));
+    }
+    if (!a.out.empty()) {
+        core::write_csv(std::filesystem::path(a.out), loop.table());
+    }
+    if (!a.plot.empty()) {
+        write_picture(figure_of(loop, law.reference_gap), a.plot);
+    }
+}
+
+int run_compare(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopOptions& o,
+                const std::vector<std::string>& warnings, Shell& shell) {
+    if (!a.export_c.empty()) {
+        throw core::UsageError("option", "--export-c writes one controller, --compare compares them all", {},
+                               "leave one of them out");
+    }
+    std::string text;
+    const nlohmann::json list = compare_estimators(a, plant, law, o, text);
+    if (shell.json) {
+        shell.print_json({{"estimators", list}, {"warnings", warnings}});
+    }
+    shell.print(text);
+    return ExitCode::done;
+}
+
+int run_control(const ControlArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot, a.region, a.export_c}) {
+        Shell::will_write(file);
+    }
+    const dynamics::Model model = dynamics::read_model(a.model);
+    dynamics::Conditions held;
+    for (const auto& v :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
+        held.set(v.name, v.value);
+    }
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, held);
+    const SeparatedPlant plant = separate(model, held);
+    shell.show(plant.remarks);
+    ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
+    law.limit = quantity("--limit", a.limit, "N", INFINITY);
+    const LoopOptions o = loop_options(a, law.reference_gap);
+    check(a, plant, law, o, shell);
+    if (a.compare) {
+        return run_compare(a, plant, law, o, warnings, shell);
+    }
+    const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
+    const LoopRun loop = close_loop(plant, law, estimator, o);
+    shell.hand_over("motion", [&] { return loop.table(); });
+    write_files(a, loop, plant, law, estimator, o);
+    nlohmann::json json = json_of(loop, plant, law, a, warnings);
     std::string region_text;
     if (!a.region.empty()) {
         json["region"] = draw_region(a, plant, law, estimator, o, shell, region_text);

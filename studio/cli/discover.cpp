@@ -204,12 +204,58 @@ std::string export_again(discovery::Discovery& found, const dynamics::Model& mod
     return text;
 }
 
-}  // namespace
+/// The files that are written: before the work.
+void check_files(const DiscoverArguments& arguments) {
+    for (const char* file : {"model.toml", "report.html", "discovery.json", "next-experiment.csv"}) {
+        Shell::will_write((std::filesystem::path(arguments.out) / file).string());
+    }
+    for (const std::string& name : arguments.exports) {
+        if (std::filesystem::path(name).has_parent_path()) {
+            throw core::UsageError("path", "'" + name + "' is more than the name of a file", {},
+                                   "it is written into --out: --export lift.h");
+        }
+        (void)estimator::export_format_of(name);
+    }
+}
 
-void add_discover_command(CLI::App& app, Shell& shell) {
-    CLI::App* command = app.add_subcommand(
-        "discover", "find what the model lacks: from measured data to the effect, and the error before and after");
-    auto arguments = std::make_shared<DiscoverArguments>();
+int discover_effects(Shell& shell, const DiscoverArguments& arguments, const discovery::FigureRenderer& renderer) {
+    if (arguments.model.empty() || arguments.data.empty()) {
+        throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {},
+                               "underbody discover model.toml --data runs --out found");
+    }
+    check_files(arguments);
+    const dynamics::Model model = dynamics::read_model(arguments.model);
+    const dynamics::Measurements data = dynamics::read_measurements(arguments.data);
+    std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+    discovery::DiscoverOptions options;
+    options.horizon = option_value("--horizon", arguments.horizon, "s");
+    options.seed = arguments.seed;
+    options.placebo_twins = arguments.placebo;
+    options.candidates = arguments.candidates;
+    for (const std::string& name : options.candidates) {
+        (void)dynamics::effect(name);  // says the nearest name where there is none
+    }
+    discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
+    shell.show(found.problems);
+    for (const core::Problem& problem : found.problems) {
+        if (problem.severity != core::Problem::Severity::note) {
+            warnings.push_back(problem.message);
+        }
+    }
+    std::string again = make_again(found, model, data, shell);
+    again += export_again(found, model, arguments, shell);
+    discovery::write_discovery(found, model, data, arguments.out, renderer);
+    if (shell.json) {
+        nlohmann::json json = discovery::to_json(found);
+        json["warnings"] = warnings;
+        shell.print_json(json);
+    }
+    print(shell, found, arguments.out);
+    shell.print(again);
+    return ExitCode::done;
+}
+
+void add_options(CLI::App* command, const std::shared_ptr<DiscoverArguments>& arguments) {
     command->add_option("model", arguments->model, "the declared model (model.toml)");
     command->add_option("--data", arguments->data, "folder of measurements (with dataset.toml)");
     command->add_option("--out", arguments->out, "folder for model.toml, report.html and discovery.json")->required();
@@ -234,6 +280,15 @@ void add_discover_command(CLI::App& app, Shell& shell) {
                         "file for a controller (its ending says the format, such as lift.h), written into --out with "
                         "the model as found and into --out/declared with the model as declared, and compared in the "
                         "report; may be given again");
+}
+
+}  // namespace
+
+void add_discover_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand(
+        "discover", "find what the model lacks: from measured data to the effect, and the error before and after");
+    auto arguments = std::make_shared<DiscoverArguments>();
+    add_options(command, arguments);
     command->footer(
         "Examples:\n"
         "  underbody discover model.toml --data runs --out found        report, new model and discovery.json in "
@@ -256,49 +311,7 @@ void add_discover_command(CLI::App& app, Shell& shell) {
         if (!arguments->log.empty()) {
             return reduce(shell, *arguments);
         }
-        if (arguments->model.empty() || arguments->data.empty()) {
-            throw core::UsageError("missing", "discover needs the declared model and --data FOLDER", {},
-                                   "underbody discover model.toml --data runs --out found");
-        }
-        for (const char* file : {"model.toml", "report.html", "discovery.json", "next-experiment.csv"}) {
-            Shell::will_write((std::filesystem::path(arguments->out) / file).string());
-        }
-        for (const std::string& name : arguments->exports) {
-            if (std::filesystem::path(name).has_parent_path()) {
-                throw core::UsageError("path", "'" + name + "' is more than the name of a file", {},
-                                       "it is written into --out: --export lift.h");
-            }
-            (void)estimator::export_format_of(name);
-        }
-        const dynamics::Model model = dynamics::read_model(arguments->model);
-        const dynamics::Measurements data = dynamics::read_measurements(arguments->data);
-        std::vector<std::string> warnings = show_table_warnings(shell, model, data);
-        discovery::DiscoverOptions options;
-        options.horizon = option_value("--horizon", arguments->horizon, "s");
-        options.seed = arguments->seed;
-        options.placebo_twins = arguments->placebo;
-        options.candidates = arguments->candidates;
-        for (const std::string& name : options.candidates) {
-            (void)dynamics::effect(name);  // says the nearest name where there is none
-        }
-        discovery::Discovery found = discovery::discover(model, data, options, shell.progress());
-        shell.show(found.problems);
-        for (const core::Problem& problem : found.problems) {
-            if (problem.severity != core::Problem::Severity::note) {
-                warnings.push_back(problem.message);
-            }
-        }
-        std::string again = make_again(found, model, data, shell);
-        again += export_again(found, model, *arguments, shell);
-        discovery::write_discovery(found, model, data, arguments->out, renderer);
-        if (shell.json) {
-            nlohmann::json json = discovery::to_json(found);
-            json["warnings"] = warnings;
-            shell.print_json(json);
-        }
-        print(shell, found, arguments->out);
-        shell.print(again);
-        return static_cast<int>(ExitCode::done);
+        return discover_effects(shell, *arguments, renderer);
     });
 }
 

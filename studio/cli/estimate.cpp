@@ -109,61 +109,7 @@ nlohmann::json along_gap(const EstimateArguments& a, const dynamics::Model& mode
     return {{"information", map}, {"consistency", consistency}, {"observability", observability}};
 }
 
-int run_estimate(const EstimateArguments& a, Shell& shell) {
-    for (const std::string& file : {a.out, a.plot, a.surface_plot, a.blind, a.consistency, a.export_c}) {
-        Shell::will_write(file);
-    }
-    const dynamics::Model model = dynamics::read_model(a.model);
-    const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
-    shell.show(data.problems);
-    estimator::EstimateOptions options = a.options;
-    if (!a.poles.empty()) {
-        options.poles = parse_poles(a.poles);
-    }
-    options.gap_sigma = a.gap_noise.empty() ? 0 : option_value("--gap-noise", a.gap_noise, "m");
-    options.velocity_sigma = a.velocity_noise.empty() ? 0 : option_value("--velocity-noise", a.velocity_noise, "m/s");
-    const estimator::Estimation result = estimator::estimate(model, data, options, shell.progress());
-    shell.show(result.remarks);
-    std::string surfaces_text;
-    nlohmann::json surfaces;
-    if (!a.surfaces.empty()) {
-        core::Figure figure;
-        surfaces = identify(a, data, result.noise, surfaces_text, figure);
-        if (!a.surface_plot.empty()) {
-            write_picture(figure, a.surface_plot);
-        }
-    }
-    nlohmann::json along;
-    if (!a.blind.empty() || !a.consistency.empty()) {
-        along = along_gap(a, model, data, result, shell, surfaces_text);
-    }
-    if (!a.export_c.empty() && result.design.empty()) {
-        throw core::UsageError("missing", "the extended filter has no linear form to export", {},
-                               "choose --observer kalman, reduced, full, latent or disturbance");
-    }
-    shell.hand_over("estimates", [&] { return result.table; });
-    if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), result.table);
-    }
-    if (!a.export_c.empty()) {
-        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
-        core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, {a.model}));
-    }
-    if (!a.plot.empty()) {
-        write_picture(result.figure, a.plot);
-    }
-    if (shell.json) {
-        nlohmann::json json = result;
-        json["warnings"] = warnings;
-        if (!a.surfaces.empty()) {
-            json["surfaces"] = surfaces;
-        }
-        if (!along.is_null()) {
-            json["along_gap"] = along;
-        }
-        shell.print_json(json);
-    }
+std::string text_of(const estimator::Estimation& result) {
     std::string text = result.explanation + "\n";
     for (const auto& [name, label] : result.labels) {
         text += "  " + name + ": " + label + "\n";
@@ -185,7 +131,79 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         }
         text += "\n";
     }
-    shell.print(text + surfaces_text);
+    return text;
+}
+
+estimator::EstimateOptions options_of(const EstimateArguments& a) {
+    estimator::EstimateOptions options = a.options;
+    if (!a.poles.empty()) {
+        options.poles = parse_poles(a.poles);
+    }
+    options.gap_sigma = a.gap_noise.empty() ? 0 : option_value("--gap-noise", a.gap_noise, "m");
+    options.velocity_sigma = a.velocity_noise.empty() ? 0 : option_value("--velocity-noise", a.velocity_noise, "m/s");
+    return options;
+}
+
+void write_files(const EstimateArguments& a, const estimator::Estimation& result) {
+    if (!a.out.empty()) {
+        core::write_csv(std::filesystem::path(a.out), result.table);
+    }
+    if (!a.export_c.empty()) {
+        const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
+        core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, {a.model}));
+    }
+    if (!a.plot.empty()) {
+        write_picture(result.figure, a.plot);
+    }
+}
+
+nlohmann::json json_of(const estimator::Estimation& result, const nlohmann::json& surfaces, const nlohmann::json& along,
+                       const std::vector<std::string>& warnings) {
+    nlohmann::json json = result;
+    json["warnings"] = warnings;
+    if (!surfaces.is_null()) {
+        json["surfaces"] = surfaces;
+    }
+    if (!along.is_null()) {
+        json["along_gap"] = along;
+    }
+    return json;
+}
+
+int run_estimate(const EstimateArguments& a, Shell& shell) {
+    for (const std::string& file : {a.out, a.plot, a.surface_plot, a.blind, a.consistency, a.export_c}) {
+        Shell::will_write(file);
+    }
+    const dynamics::Model model = dynamics::read_model(a.model);
+    const dynamics::Measurements data = dynamics::read_measurements(a.data);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+    shell.show(data.problems);
+    const estimator::EstimateOptions options = options_of(a);
+    const estimator::Estimation result = estimator::estimate(model, data, options, shell.progress());
+    shell.show(result.remarks);
+    std::string surfaces_text;
+    nlohmann::json surfaces;
+    if (!a.surfaces.empty()) {
+        core::Figure figure;
+        surfaces = identify(a, data, result.noise, surfaces_text, figure);
+        if (!a.surface_plot.empty()) {
+            write_picture(figure, a.surface_plot);
+        }
+    }
+    nlohmann::json along;
+    if (!a.blind.empty() || !a.consistency.empty()) {
+        along = along_gap(a, model, data, result, shell, surfaces_text);
+    }
+    if (!a.export_c.empty() && result.design.empty()) {
+        throw core::UsageError("missing", "the extended filter has no linear form to export", {},
+                               "choose --observer kalman, reduced, full, latent or disturbance");
+    }
+    shell.hand_over("estimates", [&] { return result.table; });
+    write_files(a, result);
+    if (shell.json) {
+        shell.print_json(json_of(result, surfaces, along, warnings));
+    }
+    shell.print(text_of(result) + surfaces_text);
     return ExitCode::done;
 }
 

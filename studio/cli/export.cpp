@@ -153,6 +153,26 @@ dynamics::MotionFmuOptions motion_options(const ExportCommand& command, const dy
     return options;
 }
 
+nlohmann::json motion_json(const dynamics::MotionFmu& fmu, const std::string& motion) {
+    nlohmann::json document{{"format", "fmu"}, {"motion", motion}, {"files", {fmu.file.string()}}};
+    document["bytes"] = std::filesystem::file_size(fmu.file);
+    for (const auto& [key, variables] :
+         {std::pair{"inputs", &fmu.inputs}, std::pair{"states", &fmu.states}, std::pair{"outputs", &fmu.outputs}}) {
+        document[key] = nlohmann::json::array();
+        for (const auto& one : *variables) {
+            document[key].push_back({{"name", one.name}, {"unit", one.unit}});
+            if (variables != &fmu.outputs) {
+                document[key].back()["start"] = one.start;
+            }
+        }
+    }
+    document["warnings"] = nlohmann::json::array();
+    for (const auto& remark : fmu.remarks) {
+        document["warnings"].push_back(remark.message);
+    }
+    return document;
+}
+
 /// The motion of a model, not only its forces.
 int run_motion(Shell& shell, const ExportCommand& command) {
     if (!command.table.is_model()) {
@@ -184,23 +204,7 @@ int run_motion(Shell& shell, const ExportCommand& command) {
     };
     shell.info("inputs " + names(fmu.inputs) + "; states " + names(fmu.states));
     if (shell.json) {
-        nlohmann::json document{{"format", "fmu"}, {"motion", command.motion}, {"files", {fmu.file.string()}}};
-        document["bytes"] = std::filesystem::file_size(fmu.file);
-        for (const auto& [key, variables] :
-             {std::pair{"inputs", &fmu.inputs}, std::pair{"states", &fmu.states}, std::pair{"outputs", &fmu.outputs}}) {
-            document[key] = nlohmann::json::array();
-            for (const auto& one : *variables) {
-                document[key].push_back({{"name", one.name}, {"unit", one.unit}});
-                if (variables != &fmu.outputs) {
-                    document[key].back()["start"] = one.start;
-                }
-            }
-        }
-        document["warnings"] = nlohmann::json::array();
-        for (const auto& remark : fmu.remarks) {
-            document["warnings"].push_back(remark.message);
-        }
-        shell.print_json(document);
+        shell.print_json(motion_json(fmu, command.motion));
     }
     return done;
 }
@@ -214,6 +218,68 @@ std::filesystem::path missing_folder(const std::filesystem::path& file) {
         missing = folder;
     }
     return missing;
+}
+
+/// How large the files are; a warning where that is more than most consumers take.
+core::Problems size_remarks(Shell& shell, std::uintmax_t bytes, bool thinned) {
+    core::Problems large;
+    if (bytes > 20'000'000) {
+        large.push_back({core::Problem::Severity::warning,
+                         "the export has " + core::format_number(static_cast<double>(bytes) / 1e6, 3) +
+                             " MB, more than most compilers and controllers take" +
+                             (thinned ? "" : ": --max-error 0.5% or --points make it smaller"),
+                         {}});
+        shell.show(large);
+    }
+    shell.info(core::format_number(static_cast<double>(bytes) / 1000, 3) + " kB" +
+               (bytes > 50000 && !thinned
+                    ? ": every set point and every cell of the table; --max-error 0.5% or --points "
+                      "make it smaller"
+                    : ""));
+    return large;
+}
+
+/// Says and returns the error of each table.
+nlohmann::json errors_of(Shell& shell, const ExportCommand& command, const std::vector<tables::ForceTable>& all,
+                         const tables::ExportResult& result, double max_error) {
+    std::string grid;
+    for (const auto points : result.grid) {
+        grid += (grid.empty() ? "" : " x ") + std::to_string(points);
+    }
+    nlohmann::json errors = nlohmann::json::array();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto& table = all[i];
+        const double error = result.errors[i].second;
+        const auto [low, high] = tables::range_of_points(table);
+        shell.info(table.quantity() + " on a grid of " + grid +
+                   (error > 0 ? ", within " + core::format_number(error, 3) + " " + table.unit() +
+                                    (command.table.is_model() ? " of the forces of the model" : " of the full table")
+                              : "") +
+                   (max_error > 0
+                        ? "; allowed are " + cases::percent(max_error) + " of the range of its points, " +
+                              core::format_number(low, 3) + " to " + core::format_number(high, 3) + " " + table.unit()
+                        : ""));
+        errors.push_back({{"quantity", result.errors[i].first},
+                          {"unit", table.unit()},
+                          {"max_error", error},
+                          {"range", {low, high}}});
+    }
+    return errors;
+}
+
+nlohmann::json json_of(const tables::ExportResult& result, const std::string& format, const std::string& quantity,
+                       const nlohmann::json& errors, std::uintmax_t bytes) {
+    nlohmann::json document{{"format", format},
+                            {"grid", result.grid},
+                            {"error", result.error},
+                            {"quantity", quantity},
+                            {"quantities", errors}};
+    document["files"] = nlohmann::json::array();
+    document["bytes"] = bytes;
+    for (const auto& file : result.files) {
+        document["files"].push_back(file.string());
+    }
+    return document;
 }
 
 int run_export(Shell& shell, const ExportCommand& command) {
@@ -234,10 +300,6 @@ int run_export(Shell& shell, const ExportCommand& command) {
     const auto folder = missing_folder(command.out);
     const auto result = tables::export_tables(all, format, command.out, options, shell.progress());
     shell.show(result.remarks);
-    std::string grid;
-    for (const auto points : result.grid) {
-        grid += (grid.empty() ? "" : " x ") + std::to_string(points);
-    }
     std::uintmax_t bytes = 0;
     for (const auto& file : result.files) {
         shell.print(file.string());
@@ -246,52 +308,12 @@ int run_export(Shell& shell, const ExportCommand& command) {
     if (!folder.empty()) {
         shell.info("made the folder " + folder.string());
     }
-    const bool thinned = options.max_error > 0 || !options.points.empty();
-    core::Problems large;
-    if (bytes > 20'000'000) {
-        large.push_back({core::Problem::Severity::warning,
-                         "the export has " + core::format_number(static_cast<double>(bytes) / 1e6, 3) +
-                             " MB, more than most compilers and controllers take" +
-                             (thinned ? "" : ": --max-error 0.5% or --points make it smaller"),
-                         {}});
-        shell.show(large);
-    }
-    shell.info(core::format_number(static_cast<double>(bytes) / 1000, 3) + " kB" +
-               (bytes > 50000 && !thinned
-                    ? ": every set point and every cell of the table; --max-error 0.5% or --points "
-                      "make it smaller"
-                    : ""));
-    nlohmann::json errors = nlohmann::json::array();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto& table = all[i];
-        const double error = result.errors[i].second;
-        const auto [low, high] = tables::range_of_points(table);
-        shell.info(table.quantity() + " on a grid of " + grid +
-                   (error > 0 ? ", within " + core::format_number(error, 3) + " " + table.unit() +
-                                    (command.table.is_model() ? " of the forces of the model" : " of the full table")
-                              : "") +
-                   (options.max_error > 0
-                        ? "; allowed are " + cases::percent(options.max_error) + " of the range of its points, " +
-                              core::format_number(low, 3) + " to " + core::format_number(high, 3) + " " + table.unit()
-                        : ""));
-        errors.push_back({{"quantity", result.errors[i].first},
-                          {"unit", table.unit()},
-                          {"max_error", error},
-                          {"range", {low, high}}});
-    }
+    const core::Problems large = size_remarks(shell, bytes, options.max_error > 0 || !options.points.empty());
+    const nlohmann::json errors = errors_of(shell, command, all, result, options.max_error);
     if (shell.json) {
-        nlohmann::json document{{"format", format},
-                                {"grid", result.grid},
-                                {"error", result.error},
-                                {"quantity", all.front().quantity()},
-                                {"quantities", errors}};
-        document["files"] = nlohmann::json::array();
-        document["bytes"] = bytes;
+        nlohmann::json document = json_of(result, format, all.front().quantity(), errors, bytes);
         if (!folder.empty()) {
             document["made_folder"] = folder.string();
-        }
-        for (const auto& file : result.files) {
-            document["files"].push_back(file.string());
         }
         command.table.describe(document);
         for (const auto& problem : large) {

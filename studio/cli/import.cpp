@@ -128,17 +128,54 @@ std::string those_written(const nlohmann::json& written, std::size_t all) {
     return "written before: " + names + "; the other " + core::counted(all - written.size(), "file") + " were not";
 }
 
+struct ImportArguments {
+    std::vector<std::string> files;
+    std::string out;
+    std::vector<std::string> arrays;
+    FieldOptions field;
+};
+
+int run_import(Shell& shell, const ImportArguments& options) {
+    const Batch batch = find_files(options.files, "", options.field.zones);
+    shell.show(batch.problems);
+    const auto outputs = outputs_for(options.out, batch.files);
+    check_outputs(outputs, batch.files);
+    nlohmann::json written = nlohmann::json::array();
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const std::string& file = batch.files[i].path;
+        try {
+            postproc::ReadOptions read = options.field.read_options();
+            read.zones = options.field.zones;
+            read.arrays = options.arrays;
+            const auto field = shell.read_field(file, read);
+            shell.show(field.problems);
+            show_missing_arrays(shell, field, options.arrays);
+            show_new_folder(shell, outputs[i]);
+            shell.show(postproc::write_vtk(field, outputs[i], shell.progress()));
+            const postproc::FieldSummary summary = postproc::summarise(field);
+            show_missing_values(shell, summary);
+            nlohmann::json entry = summary;
+            entry["out"] = outputs[i].string();
+            written.push_back(std::move(entry));
+        } catch (const core::Error&) {
+            if (!written.empty()) {
+                shell.warn(those_written(written, outputs.size()));
+            }
+            throw;
+        }
+        shell.print("wrote " + outputs[i].string());
+    }
+    if (shell.json) {
+        shell.print_json(written.size() == 1 ? written.front() : nlohmann::json{{"files", written}});
+    }
+    return done;
+}
+
 }  // namespace
 
 void add_import_command(CLI::App& app, Shell& shell) {
     auto* command = app.add_subcommand("import", "CFD exports as VTK files: SI units, canonical array names");
-    struct Options {
-        std::vector<std::string> files;
-        std::string out;
-        std::vector<std::string> arrays;
-        FieldOptions field;
-    };
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ImportArguments>();
     command->add_option("files", options->files, "CFD files, or patterns of names")->required();
     command->add_option("-o,--out", options->out, "what to write: .vtp surfaces, .vtu volumes, .vtm every zone a block")
         ->required();
@@ -152,41 +189,7 @@ void add_import_command(CLI::App& app, Shell& shell) {
         "  underbody import case.cas.h5 --out case.vtm --zones 'hull,base'\n"
         "  underbody import 'run-*.csv' --out all.vtp      writes all-run-1.vtp, all-run-2.vtp ...\n"
         "  underbody import a/body.csv b/body.csv --out all.vtp      writes all-a-body.vtp, all-b-body.vtp");
-    shell.on(command, [&shell, options] {
-        const Batch batch = find_files(options->files, "", options->field.zones);
-        shell.show(batch.problems);
-        const auto outputs = outputs_for(options->out, batch.files);
-        check_outputs(outputs, batch.files);
-        nlohmann::json written = nlohmann::json::array();
-        for (std::size_t i = 0; i < outputs.size(); ++i) {
-            const std::string& file = batch.files[i].path;
-            try {
-                postproc::ReadOptions read = options->field.read_options();
-                read.zones = options->field.zones;
-                read.arrays = options->arrays;
-                const auto field = shell.read_field(file, read);
-                shell.show(field.problems);
-                show_missing_arrays(shell, field, options->arrays);
-                show_new_folder(shell, outputs[i]);
-                shell.show(postproc::write_vtk(field, outputs[i], shell.progress()));
-                const postproc::FieldSummary summary = postproc::summarise(field);
-                show_missing_values(shell, summary);
-                nlohmann::json entry = summary;
-                entry["out"] = outputs[i].string();
-                written.push_back(std::move(entry));
-            } catch (const core::Error&) {
-                if (!written.empty()) {
-                    shell.warn(those_written(written, outputs.size()));
-                }
-                throw;
-            }
-            shell.print("wrote " + outputs[i].string());
-        }
-        if (shell.json) {
-            shell.print_json(written.size() == 1 ? written.front() : nlohmann::json{{"files", written}});
-        }
-        return static_cast<int>(done);
-    });
+    shell.on(command, [&shell, options] { return run_import(shell, *options); });
 }
 
 }  // namespace underbody::studio

@@ -75,23 +75,8 @@ Value choose(const std::string& text, const std::vector<std::pair<std::string, V
                            core::did_you_mean(text, names));
 }
 
-TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& plant) {
-    TrainingOptions o;
-    o.method = choose<TrainingOptions::Method>(a.method,
-                                               {{"grid", TrainingOptions::Method::grid},
-                                                {"time", TrainingOptions::Method::time},
-                                                {"dmdc", TrainingOptions::Method::grid},
-                                                {"edmd", TrainingOptions::Method::grid}},
-                                               "--method");
-    o.samples = a.samples;
-    o.seed = a.seed;
-    o.start_at_rest = a.at_rest;
-    o.excitation = choose<Excitation>(a.excitation,
-                                      {{"none", Excitation::none},
-                                       {"white", Excitation::white},
-                                       {"pink", Excitation::pink},
-                                       {"pulses", Excitation::pulses}},
-                                      "--excitation");
+/// Gaps and velocities to sample: those of the force table, unless stated.
+void take_region(TrainingOptions& o, const LearnArguments& a, const SeparatedPlant& plant) {
     o.gap_lower = std::max(plant.lower, plant.contact_gap);
     o.gap_upper = plant.upper;
     for (const core::NamedRange& r :
@@ -111,15 +96,9 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
         throw core::UsageError("range", "the model has no force table whose gaps could be sampled", {},
                                "say them: --region gap=0:0.1");
     }
-    double largest = 0, slope = 0;
-    for (int i = 0; i <= 400; ++i) {
-        largest =
-            std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));
-    }
-    o.input_sigma =
-        a.input_sigma.empty() ? std::max(0.5 * largest, 1e-4) : option_value("--input-sigma", a.input_sigma, "N");
-    o.duration = a.duration.empty() ? o.duration : option_value("--for", a.duration, "s");
-    o.interval = a.interval.empty() ? o.interval : option_value("--every", a.interval, "s");
+}
+
+void take_auxiliaries(TrainingOptions& o, const LearnArguments& a) {
     if (!a.auxiliaries.empty()) {
         if (a.method == "dmdc") {
             throw core::UsageError("range", "--method dmdc has no auxiliary variables", {},
@@ -131,6 +110,9 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
     } else if (a.method == "edmd") {
         o.auxiliaries = usual_dictionary();
     }
+}
+
+void take_mesh(TrainingOptions& o, const LearnArguments& a) {
     if (!a.mesh.empty()) {
         const auto parts = split(a.mesh, 'x');
         if (parts.size() != 3) {
@@ -150,6 +132,37 @@ TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& 
         o.focus_upper = option_value("--focus", std::string(parts[1]), "m");
         o.focus_share = option_value("--focus", std::string(parts[2]), "1");
     }
+}
+
+TrainingOptions training_options(const LearnArguments& a, const SeparatedPlant& plant) {
+    TrainingOptions o;
+    o.method = choose<TrainingOptions::Method>(a.method,
+                                               {{"grid", TrainingOptions::Method::grid},
+                                                {"time", TrainingOptions::Method::time},
+                                                {"dmdc", TrainingOptions::Method::grid},
+                                                {"edmd", TrainingOptions::Method::grid}},
+                                               "--method");
+    o.samples = a.samples;
+    o.seed = a.seed;
+    o.start_at_rest = a.at_rest;
+    o.excitation = choose<Excitation>(a.excitation,
+                                      {{"none", Excitation::none},
+                                       {"white", Excitation::white},
+                                       {"pink", Excitation::pink},
+                                       {"pulses", Excitation::pulses}},
+                                      "--excitation");
+    take_region(o, a, plant);
+    double largest = 0, slope = 0;
+    for (int i = 0; i <= 400; ++i) {
+        largest =
+            std::max(largest, std::abs(plant.ground_force(o.gap_lower + (o.gap_upper - o.gap_lower) * i / 400, slope)));
+    }
+    o.input_sigma =
+        a.input_sigma.empty() ? std::max(0.5 * largest, 1e-4) : option_value("--input-sigma", a.input_sigma, "N");
+    o.duration = a.duration.empty() ? o.duration : option_value("--for", a.duration, "s");
+    o.interval = a.interval.empty() ? o.interval : option_value("--every", a.interval, "s");
+    take_auxiliaries(o, a);
+    take_mesh(o, a);
     return o;
 }
 

@@ -299,6 +299,25 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
                        core::format_number(degrees * chart.best_gamma, 4) + " deg\n");
 }
 
+/// Thrusts of the jets that hold a straight run, or none; how that is said.
+struct RunThrust {
+    std::vector<double> thrust;
+    std::string said;
+};
+
+RunThrust run_thrust(const dynamics::Model& model, const dynamics::SurfaceMotion& motion, double speed) {
+    RunThrust run{std::vector<double>(model.jets.size(), 0.0), "no jets"};
+    if (!model.jets.empty()) {
+        try {
+            run.thrust = dynamics::surface_trim_thrusts(motion, speed);
+            run.said = "jets in trim";
+        } catch (const core::InputError& error) {
+            run.said = std::string("jets off: ") + error.what();
+        }
+    }
+    return run;
+}
+
 void surface(const dynamics::Model& model, const dynamics::Conditions& held, const LinearArguments& a,
              nlohmann::json& json, std::string& text) {
     const double speed = held.get(dynamics::Channel::speed, 0.35);
@@ -306,16 +325,7 @@ void surface(const dynamics::Model& model, const dynamics::Conditions& held, con
         return;
     }
     const dynamics::SurfaceMotion motion(model, held);
-    std::vector<double> thrust(model.jets.size(), 0.0);
-    std::string trim = "no jets";
-    if (!model.jets.empty()) {
-        try {
-            thrust = dynamics::surface_trim_thrusts(motion, speed);
-            trim = "jets in trim";
-        } catch (const core::InputError& error) {
-            trim = std::string("jets off: ") + error.what();
-        }
-    }
+    const auto [thrust, trim] = run_thrust(model, motion, speed);
     const dynamics::SurfaceState run{speed, 0, 0, 0, 0, 0};
     const double normal = motion.contact(run, thrust).normal;
     if (normal < 0) {
@@ -414,13 +424,8 @@ void sweep(const dynamics::Model& model, const dynamics::Conditions& held, const
     }
 }
 
-int run_linear(const LinearArguments& a, Shell& shell) {
-    const dynamics::Model model = dynamics::read_model(a.model);
-    dynamics::Conditions given;
-    for (const core::NamedValue& value :
-         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
-        given.set(value.name, value.value);
-    }
+/// The trim that is asked for, if one is; its speed goes to the conditions.
+std::optional<dynamics::HeaveEquilibrium> trim_of(const LinearArguments& a, dynamics::Conditions& given) {
     std::optional<dynamics::HeaveEquilibrium> at;
     if (!a.at.empty()) {
         at.emplace();
@@ -438,18 +443,34 @@ int run_linear(const LinearArguments& a, Shell& shell) {
             throw core::UsageError("missing", "--at needs a gap", {}, "for instance --at gap=5mm,pitch=1deg");
         }
     }
-    const dynamics::Conditions held = given.over(model.conditions);
-    const std::vector<double> weights = weights_of(a.weights);
-    shell.show(model.remarks);
-    shell.show(dynamics::HeavePlant(model, held).left_out_of_small_motions());
-    nlohmann::json json;
-    std::string text;
+    return at;
+}
+
+void add_sweep(const LinearArguments& a, const dynamics::Model& model, const dynamics::Conditions& held,
+               nlohmann::json& json) {
     if (!a.sweep.empty()) {
         sweep(model, held, a, json);
     } else if (!a.out.empty()) {
         throw core::UsageError("missing", "--out draws a sweep: name its range", {},
                                "for instance --sweep jet_voltage=3V:12V");
     }
+}
+
+int run_linear(const LinearArguments& a, Shell& shell) {
+    const dynamics::Model model = dynamics::read_model(a.model);
+    dynamics::Conditions given;
+    for (const core::NamedValue& value :
+         a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
+        given.set(value.name, value.value);
+    }
+    const std::optional<dynamics::HeaveEquilibrium> at = trim_of(a, given);
+    const dynamics::Conditions held = given.over(model.conditions);
+    const std::vector<double> weights = weights_of(a.weights);
+    shell.show(model.remarks);
+    shell.show(dynamics::HeavePlant(model, held).left_out_of_small_motions());
+    nlohmann::json json;
+    std::string text;
+    add_sweep(a, model, held, json);
     heave(model, held, weights, at, json, text);
     text += text.empty() ? "" : free_in_pitch(model, held, json);
     const dynamics::Vehicle& v = model.vehicle;

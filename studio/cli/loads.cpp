@@ -17,6 +17,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "core/water.h"
+#include "postproc/field/beside.h"
 #include "postproc/loads/declared.h"
 #include "postproc/loads/loads_table.h"
 #include "postproc/loads/mesh_study.h"
@@ -65,6 +66,20 @@ std::optional<double> condition_of(const ConditionedFile& file, const std::strin
                                                                     : std::optional<double>(found->second);
 }
 
+[[noreturn]] void refuse_condition(const std::string& part, const ConditionedFile& file) {
+    std::vector<std::string> names;
+    for (const auto& entry : file.numbers) {
+        names.push_back(entry.first);
+    }
+    if (std::find(names.begin(), names.end(), part) != names.end()) {
+        throw core::InputError("missing", "this case has no value of '" + part + "', which --reference takes",
+                               {file.path, {}, {}, {}});
+    }
+    throw core::UsageError("usage",
+                           "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'",
+                           {}, core::did_you_mean(part, names));
+}
+
 /// The point of the moments: "x,y,z" with lengths or names of conditions ("0,0,gap"), else the manifest's columns
 /// reference_x, _y, _z.
 std::optional<postproc::Vector> reference_of(const std::string& text, const ConditionedFile& file) {
@@ -92,17 +107,7 @@ std::optional<postproc::Vector> reference_of(const std::string& text, const Cond
         const std::string part(core::trimmed(parts[k]));
         const auto known = condition(part);
         if (!known && !part.empty() && std::isalpha(static_cast<unsigned char>(part.front())) != 0) {
-            std::vector<std::string> names;
-            for (const auto& entry : file.numbers) {
-                names.push_back(entry.first);
-            }
-            if (std::find(names.begin(), names.end(), part) != names.end()) {
-                throw core::InputError("missing", "this case has no value of '" + part + "', which --reference takes",
-                                       {file.path, {}, {}, {}});
-            }
-            throw core::UsageError(
-                "usage", "'" + part + "' in --reference is neither a length nor a condition of '" + file.path + "'", {},
-                core::did_you_mean(part, names));
+            refuse_condition(part, file);
         }
         point[k] = known ? *known : option_value("--reference", part, "m");
     }
@@ -166,6 +171,43 @@ std::string cell(double value) {
 
 void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons);
 
+std::string vector(const postproc::Vector& v) {
+    const auto number = [](double value) { return core::format_number(value, 6); };
+    return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]);
+}
+
+void print_zones(Shell& shell, const postproc::LoadsResult& result) {
+    for (const auto& zone : result.zones) {
+        const auto& p = zone.pressure.force;
+        const auto& v = zone.viscous.force;
+        shell.print("zone '" + zone.name + "': " + core::counted(zone.faces, "face") + ", " +
+                    core::format_number(zone.area, 5) + " m^2, force " +
+                    vector({p[0] + v[0], p[1] + v[1], p[2] + v[2]}) + " N");
+    }
+    for (const auto& zone : result.left_out) {
+        shell.print("not summed: zone '" + zone.name + "', " + zone.why);
+    }
+    if (result.coefficients) {
+        const auto& c = *result.coefficients;
+        const auto brief = [](double value, int digits) { return core::format_number(value, digits); };
+        shell.print("C_L " + brief(c.lift, 5) + ", C_D " + brief(c.drag, 5) + ", C_M " + brief(c.pitch_moment, 5) +
+                    " on " + brief(c.length, 4) + " x " + brief(c.width, 4) + " x " + brief(c.height, 4) + " m (" +
+                    c.lengths_from + "), " + brief(c.density, 5) + " kg/m^3, " + brief(c.speed, 4) + " m/s");
+    }
+}
+
+void print_stations(Shell& shell, const postproc::LoadsResult& result) {
+    if (!result.stations.empty()) {
+        shell.print(
+            "what the part behind each place carries (along forward from the reference point):\n"
+            "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
+        for (const auto& station : result.stations) {
+            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " +
+                        cell(station.behind.drag_force) + "       " + cell(station.behind.pitch_moment));
+        }
+    }
+}
+
 void print(Shell& shell, const postproc::LoadsCase& one) {
     const postproc::LoadsResult& result = one.loads;
     const auto& [total, pressure, viscous] = std::tie(result.named, result.named_pressure, result.named_viscous);
@@ -188,10 +230,6 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     line("pitch_moment", &postproc::NamedLoads::pitch_moment, "N m, nose up");
     line("roll_moment", &postproc::NamedLoads::roll_moment, "N m, starboard down");
     line("yaw_moment", &postproc::NamedLoads::yaw_moment, "N m, bow to starboard");
-    const auto number = [](double value) { return core::format_number(value, 6); };
-    const auto vector = [&](const postproc::Vector& v) {
-        return number(v[0]) + ", " + number(v[1]) + ", " + number(v[2]);
-    };
     shell.print("force           " + vector(result.total.force) + " N, in the file's axes");
     shell.print("moment          " + vector(result.total.moment) + " N m, about " + vector(result.reference) +
                 " m: " + result.reference_from);
@@ -199,23 +237,7 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
         shell.print("acts at         " + vector(*result.centre_of_pressure) +
                     " m: the lift, on the line forward through that point");
     }
-    for (const auto& zone : result.zones) {
-        const auto& p = zone.pressure.force;
-        const auto& v = zone.viscous.force;
-        shell.print("zone '" + zone.name + "': " + core::counted(zone.faces, "face") + ", " +
-                    core::format_number(zone.area, 5) + " m^2, force " +
-                    vector({p[0] + v[0], p[1] + v[1], p[2] + v[2]}) + " N");
-    }
-    for (const auto& zone : result.left_out) {
-        shell.print("not summed: zone '" + zone.name + "', " + zone.why);
-    }
-    if (result.coefficients) {
-        const auto& c = *result.coefficients;
-        const auto brief = [](double value, int digits) { return core::format_number(value, digits); };
-        shell.print("C_L " + brief(c.lift, 5) + ", C_D " + brief(c.drag, 5) + ", C_M " + brief(c.pitch_moment, 5) +
-                    " on " + brief(c.length, 4) + " x " + brief(c.width, 4) + " x " + brief(c.height, 4) + " m (" +
-                    c.lengths_from + "), " + brief(c.density, 5) + " kg/m^3, " + brief(c.speed, 4) + " m/s");
-    }
+    print_zones(shell, result);
     shell.print("from values on " + result.values_from + "; closure " + core::format_number(result.closure, 3) +
                 "; 1 kPa of reference pressure would add " +
                 vector(postproc::plus({}, result.force_per_reference_pascal, 1000)) + " N");
@@ -223,15 +245,7 @@ void print(Shell& shell, const postproc::LoadsCase& one) {
     const std::string verdict = to_string(one.settled.verdict);
     shell.print((one.settled.verdict == postproc::SettledVerdict::unknown ? "settled: unknown: " : verdict + ": ") +
                 one.settled.why);
-    if (!result.stations.empty()) {
-        shell.print(
-            "what the part behind each place carries (along forward from the reference point):\n"
-            "     position [m]   lift_force [N]   drag_force [N]  pitch_moment [N m]");
-        for (const auto& station : result.stations) {
-            shell.print("   " + cell(station.position) + "    " + cell(station.behind.lift_force) + "    " +
-                        cell(station.behind.drag_force) + "       " + cell(station.behind.pitch_moment));
-        }
-    }
+    print_stations(shell, result);
     print(shell, one.comparisons);
 }
 
@@ -555,10 +569,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
     return cases;
 }
 
-int run_loads(Shell& shell, const LoadsArguments& given) {
-    const Batch batch = find_files(given.files, given.manifest, given.field.zones);
-    shell.list_on_stdout = given.out.empty() && (batch.files.size() > 1 || !given.manifest.empty());
-    shell.show(batch.problems);
+void check_files(const Batch& batch, const LoadsArguments& given) {
     if (batch.files.empty()) {
         throw core::UsageError("usage", "no files", {}, "name files, a pattern, or a --manifest");
     }
@@ -569,6 +580,13 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
                                    {}, "write the table to a file of its own");
         }
     }
+}
+
+int run_loads(Shell& shell, const LoadsArguments& given) {
+    const Batch batch = find_files(given.files, given.manifest, given.field.zones);
+    shell.list_on_stdout = given.out.empty() && (batch.files.size() > 1 || !given.manifest.empty());
+    shell.show(batch.problems);
+    check_files(batch, given);
     check_conditions(batch, given);
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
@@ -615,11 +633,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     return failures.empty() ? verdict : static_cast<int>(wrong_input);
 }
 
-}  // namespace
-
-void add_loads_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("loads", "forces and moments on a body, pressure and viscous part, per zone");
-    auto o = std::make_shared<LoadsArguments>();
+void add_options(CLI::App* command, const std::shared_ptr<LoadsArguments>& o) {
     command->add_option("files", o->files,
                         "CFD files, or patterns such as 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv'");
     command->add_option("--manifest", o->manifest, "table with a column `file`; its other columns are the conditions")
@@ -674,6 +688,14 @@ void add_loads_command(CLI::App& app, Shell& shell) {
     command->add_flag("--keep-going", o->keep_going,
                       "of several files, give the table of those that can be used; exit code 3 all the same");
     o->field.add_to(*command);
+}
+
+}  // namespace
+
+void add_loads_command(CLI::App& app, Shell& shell) {
+    auto* command = app.add_subcommand("loads", "forces and moments on a body, pressure and viscous part, per zone");
+    auto o = std::make_shared<LoadsArguments>();
+    add_options(command, o);
     command->footer(
         "Without --zones the walls of the body are summed. A wall that cannot be part of it (a ground, a tunnel) is "
         "left out, and said to be,\n"

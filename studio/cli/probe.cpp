@@ -114,6 +114,33 @@ nlohmann::json json_of(const core::Table& table) {
     return {{"rows", table.rows()}, {"columns", std::move(columns)}};
 }
 
+int run_probe(Shell& shell, const ProbeArguments& o) {
+    shell.list_on_stdout = o.out.empty();
+    postproc::ReadOptions read = o.field.read_options();
+    auto field = shell.read_field(o.file, read);
+    shell.show(field.problems);
+    const auto density =
+        o.density.empty() ? std::nullopt : std::optional<double>(option_value("--density", o.density, "kg/m^3"));
+    if (!postproc::bring_to_pascal(field, density) && o.gap > 0) {
+        shell.show_warning(o.file + ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
+    }
+    core::Table table = look(field, o, shell);
+    shell.comment_warnings(table);
+    shell.hand_over("values", [&] { return table; });
+    if (!o.out.empty()) {
+        core::write_csv(o.out, table);
+        shell.info("wrote " + o.out);
+    }
+    if (shell.json) {
+        shell.print_json(json_of(table));
+    } else if (o.out.empty()) {
+        std::string text = core::write_csv(table);
+        text.pop_back();
+        shell.print(text);
+    }
+    return done;
+}
+
 }  // namespace
 
 void add_probe_command(CLI::App& app, Shell& shell) {
@@ -149,33 +176,7 @@ void add_probe_command(CLI::App& app, Shell& shell) {
         "  underbody probe case.cas.gz --line \"0,0,0:0,0,5 mm\" --count 51 --arrays velocity\n"
         "  underbody probe case.cas.gz --gap 9 --symmetry y --density \"998 kg/m^3\"\n"
         "  underbody probe body.csv --point \"0,0,5 mm\" --arrays pressure");
-    shell.on(command, [&shell, o] {
-        shell.list_on_stdout = o->out.empty();
-        postproc::ReadOptions read = o->field.read_options();
-        auto field = shell.read_field(o->file, read);
-        shell.show(field.problems);
-        const auto density =
-            o->density.empty() ? std::nullopt : std::optional<double>(option_value("--density", o->density, "kg/m^3"));
-        if (!postproc::bring_to_pascal(field, density) && o->gap > 0) {
-            shell.show_warning(o->file +
-                               ": pressure is over density here: --density \"998 kg/m^3\" gives it in the gap");
-        }
-        core::Table table = look(field, *o, shell);
-        shell.comment_warnings(table);
-        shell.hand_over("values", [&] { return table; });
-        if (!o->out.empty()) {
-            core::write_csv(o->out, table);
-            shell.info("wrote " + o->out);
-        }
-        if (shell.json) {
-            shell.print_json(json_of(table));
-        } else if (o->out.empty()) {
-            std::string text = core::write_csv(table);
-            text.pop_back();
-            shell.print(text);
-        }
-        return static_cast<int>(done);
-    });
+    shell.on(command, [&shell, o] { return run_probe(shell, *o); });
 }
 
 }  // namespace underbody::studio

@@ -287,6 +287,50 @@ void check_kind(const RegionArguments& a) {
     }
 }
 
+/// Says and returns the largest safe sets about each attractor.
+nlohmann::json safe_sets(const dynamics::StabilityRegion& region, Shell& shell) {
+    nlohmann::json sets = nlohmann::json::array();
+    for (const dynamics::EndClass& end : region.classes) {
+        if (end.kind == dynamics::EndKind::attractor) {
+            const dynamics::SafeSet set = dynamics::largest_safe_set(region, end.name);
+            nlohmann::json one;
+            dynamics::to_json(one, set);
+            sets.push_back(one);
+            const auto half = [&](std::size_t axis) {
+                const bool angle = set.axes[axis].starts_with("pitch");
+                return core::format_number((angle ? 57.29577951308232 : 1e3) * set.ellipse[axis], 4) +
+                       (angle ? " deg" : " mm") + (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
+            };
+            shell.print("safe about " + end.name + ": ellipse +-" + half(0) + ", +-" + half(1) + "\n");
+        }
+    }
+    return sets;
+}
+
+int run_map(const RegionArguments& a, const dynamics::Model& model, const dynamics::RegionOptions& options,
+            Shell& shell) {
+    const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
+    shell.show(region.remarks);
+    if (!a.out.empty()) {
+        write_picture(dynamics::region_figure(region), a.out);
+    }
+    if (!a.table.empty()) {
+        core::write_csv(std::filesystem::path(a.table), commented_map(region, shell));
+    }
+    shell.hand_over("map", [&] { return commented_map(region, shell); });
+    nlohmann::json json;
+    dynamics::to_json(json, region);
+    show_forces(shell, model, options.held, json);
+    print_classes(shell, region.classes);
+    if (a.safe) {
+        json["safe_sets"] = safe_sets(region, shell);
+    }
+    if (shell.json) {
+        shell.print_json(json);
+    }
+    return ExitCode::done;
+}
+
 int run_region(const RegionArguments& a, Shell& shell) {
     check_kind(a);
     a.loop.check();
@@ -313,48 +357,10 @@ int run_region(const RegionArguments& a, Shell& shell) {
     if (!a.variants.empty()) {
         return run_variants(a, model, options, shell);
     }
-    const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
-    shell.show(region.remarks);
-    if (!a.out.empty()) {
-        write_picture(dynamics::region_figure(region), a.out);
-    }
-    if (!a.table.empty()) {
-        core::write_csv(std::filesystem::path(a.table), commented_map(region, shell));
-    }
-    shell.hand_over("map", [&] { return commented_map(region, shell); });
-    nlohmann::json json;
-    dynamics::to_json(json, region);
-    show_forces(shell, model, options.held, json);
-    print_classes(shell, region.classes);
-    if (a.safe) {
-        json["safe_sets"] = nlohmann::json::array();
-        for (const dynamics::EndClass& end : region.classes) {
-            if (end.kind == dynamics::EndKind::attractor) {
-                const dynamics::SafeSet set = dynamics::largest_safe_set(region, end.name);
-                nlohmann::json one;
-                dynamics::to_json(one, set);
-                json["safe_sets"].push_back(one);
-                const auto half = [&](std::size_t axis) {
-                    const bool angle = set.axes[axis].starts_with("pitch");
-                    return core::format_number((angle ? 57.29577951308232 : 1e3) * set.ellipse[axis], 4) +
-                           (angle ? " deg" : " mm") +
-                           (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
-                };
-                shell.print("safe about " + end.name + ": ellipse +-" + half(0) + ", +-" + half(1) + "\n");
-            }
-        }
-    }
-    if (shell.json) {
-        shell.print_json(json);
-    }
-    return ExitCode::done;
+    return run_map(a, model, options, shell);
 }
 
-}  // namespace
-
-void add_region_command(CLI::App& app, Shell& shell) {
-    CLI::App* command = app.add_subcommand("region", "stability region: for each start, where the motion ends");
-    auto a = std::make_shared<RegionArguments>();
+void add_options(CLI::App* command, const std::shared_ptr<RegionArguments>& a) {
     command->add_option("model", a->model, "the model (model.toml)")->required();
     command->add_option("--set", a->set, set_help());
     command->add_option("--axes", a->axes,
@@ -390,6 +396,14 @@ void add_region_command(CLI::App& app, Shell& shell) {
     command->add_flag("--through-contact", a->through_contact,
                       "heave and pitch: go on after touching the ground; contact is then to come to rest on it");
     command->add_flag("--safe", a->safe, "the largest ellipse and box of safe starts about each attractor");
+}
+
+}  // namespace
+
+void add_region_command(CLI::App& app, Shell& shell) {
+    CLI::App* command = app.add_subcommand("region", "stability region: for each start, where the motion ends");
+    auto a = std::make_shared<RegionArguments>();
+    add_options(command, a);
     command->footer(
         "Examples:\n"
         "  underbody region model.toml --axes gap=0:1,heave_velocity=-0.1:0.1 --out region.png\n"

@@ -123,6 +123,21 @@ core::Table commented_map(const dynamics::StabilityRegion& region, const Shell& 
     return map;
 }
 
+std::string text_of(const dynamics::StabilityRegion& region) {
+    std::string text = region.rule + "\n";
+    for (const dynamics::EndClass& end : region.classes) {
+        text +=
+            std::string(dynamics::end_kind_name(end.kind)) +
+            (end.name == dynamics::end_kind_name(end.kind) ? "" : " " + end.name) +
+            (std::isnan(end.gap) ? "" : " at " + core::format_number(1e3 * end.gap, 5) + " mm") + ": " +
+            core::format_number(100 * end.fraction, 4) + " %" +
+            (end.outside > 0 ? " (" + core::format_number(100 * end.outside, 4) + " % by motions beyond a force table)"
+                             : "") +
+            "\n";
+    }
+    return text;
+}
+
 int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model& model,
                               const dynamics::RegionOptions& options, std::size_t draws, std::uint64_t seed,
                               const std::string& picture, const std::string& table, Shell& shell) {
@@ -154,17 +169,7 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
         if (!table.empty()) {
             core::write_csv(std::filesystem::path(table), commented_map(region, shell));
         }
-        text = region.rule + "\n";
-        for (const dynamics::EndClass& end : region.classes) {
-            text += std::string(dynamics::end_kind_name(end.kind)) +
-                    (end.name == dynamics::end_kind_name(end.kind) ? "" : " " + end.name) +
-                    (std::isnan(end.gap) ? "" : " at " + core::format_number(1e3 * end.gap, 5) + " mm") + ": " +
-                    core::format_number(100 * end.fraction, 4) + " %" +
-                    (end.outside > 0
-                         ? " (" + core::format_number(100 * end.outside, 4) + " % by motions beyond a force table)"
-                         : "") +
-                    "\n";
-        }
+        text = text_of(region);
     }
     if (!picture.empty()) {
         write_picture(figure, picture);

@@ -45,53 +45,38 @@ nlohmann::json forces_of(const fs::path& folder) {
     return forces;
 }
 
-int solve(Shell& shell, const std::string& folder, bool again) {
-    const bool before = !again && cases::solve_end(folder).solved;
-    double needed = 0;
+/// Runs the case to its end; the seconds that it took, and the iteration that it went on from.
+struct Solved {
+    double seconds = 0;
     std::optional<double> from;
-    if (!before) {
-        if (again && cases::solves_anew(folder)) {
-            cases::set_results_aside(folder);
-        }
-        cases::OpenFoamRun run(folder);
-        from = run.went_on_from();
-        if (from) {
-            shell.info(*from > 0 ? "goes on from iteration " + core::format_number(*from)
-                                 : "goes on with the mesh that is there");
-        }
-        while (!run.finished()) {
-            shell.progress().check();
-            const auto state = cases::run_state(folder);
-            shell.progress().report(state.fraction(),
-                                    state.step + (state.iteration > 0 ? " " + std::to_string(state.iteration) + " of " +
-                                                                            std::to_string(state.iterations)
-                                                                      : ""));
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
-        needed = run.seconds();
-        const cases::SolveEnd end = cases::solve_end(folder);
-        if (!end.solved) {
-            throw core::InputError("solver", "the script ended without a whole solution: " + end.why,
-                                   {(fs::path(folder) / "log.Allrun").string(), {}, {}, {}});
-        }
+};
+
+Solved run_case(Shell& shell, const std::string& folder) {
+    cases::OpenFoamRun run(folder);
+    const auto from = run.went_on_from();
+    if (from) {
+        shell.info(*from > 0 ? "goes on from iteration " + core::format_number(*from)
+                             : "goes on with the mesh that is there");
     }
-    const auto state = cases::run_state(folder);
-    const auto forces = forces_of(folder);
-    const auto loads = cases::settled_loads(folder);
-    if (loads.iterations > 0 && !loads.settled) {
-        shell.show_warning("not settled: " + loads.text);
+    while (!run.finished()) {
+        shell.progress().check();
+        const auto state = cases::run_state(folder);
+        shell.progress().report(state.fraction(),
+                                state.step + (state.iteration > 0 ? " " + std::to_string(state.iteration) + " of " +
+                                                                        std::to_string(state.iterations)
+                                                                  : ""));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    if (shell.json) {
-        shell.print_json({{"case", folder},
-                          {"solved_before", before},
-                          {"went_on_from", from ? nlohmann::json(*from) : nlohmann::json(nullptr)},
-                          {"iterations", state.iteration},
-                          {"seconds", needed},
-                          {"settled", loads.iterations > 0 ? nlohmann::json(loads.settled) : nlohmann::json(nullptr)},
-                          {"settled_text", loads.text},
-                          {"forces", forces}});
-        return done;
+    const cases::SolveEnd end = cases::solve_end(folder);
+    if (!end.solved) {
+        throw core::InputError("solver", "the script ended without a whole solution: " + end.why,
+                               {(fs::path(folder) / "log.Allrun").string(), {}, {}, {}});
     }
+    return {run.seconds(), from};
+}
+
+void print_solved(Shell& shell, const std::string& folder, bool before, double needed, const cases::RunState& state,
+                  const cases::SettledLoads& loads, const nlohmann::json& forces) {
     shell.print(folder + (before
                               ? ": solved before, nothing was run (--again runs it)"
                               : ": solved in " + seconds(needed) + ", " + core::counted(state.iteration, "iteration")));
@@ -106,6 +91,35 @@ int solve(Shell& shell, const std::string& folder, bool again) {
         shell.print("force of '" + entry["name"].get<std::string>() +
                     "', in the case's axes and of the mesh: " + numbers + " N");
     }
+}
+
+int solve(Shell& shell, const std::string& folder, bool again) {
+    const bool before = !again && cases::solve_end(folder).solved;
+    Solved made;
+    if (!before) {
+        if (again && cases::solves_anew(folder)) {
+            cases::set_results_aside(folder);
+        }
+        made = run_case(shell, folder);
+    }
+    const auto state = cases::run_state(folder);
+    const auto forces = forces_of(folder);
+    const auto loads = cases::settled_loads(folder);
+    if (loads.iterations > 0 && !loads.settled) {
+        shell.show_warning("not settled: " + loads.text);
+    }
+    if (shell.json) {
+        shell.print_json({{"case", folder},
+                          {"solved_before", before},
+                          {"went_on_from", made.from ? nlohmann::json(*made.from) : nlohmann::json(nullptr)},
+                          {"iterations", state.iteration},
+                          {"seconds", made.seconds},
+                          {"settled", loads.iterations > 0 ? nlohmann::json(loads.settled) : nlohmann::json(nullptr)},
+                          {"settled_text", loads.text},
+                          {"forces", forces}});
+        return done;
+    }
+    print_solved(shell, folder, before, made.seconds, state, loads, forces);
     return done;
 }
 
@@ -204,7 +218,21 @@ void check_engine(const SweepArguments& given) {
     }
 }
 
-int submit(Shell& shell, const cases::Study& study, const SweepArguments& given) {
+nlohmann::json print_arrays(Shell& shell, const std::vector<cases::SlurmArray>& arrays) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const auto& array : arrays) {
+        shell.print("wrote " + array.script.string() + " of " + core::counted(array.names.size(), "case") +
+                    (array.job.empty()
+                         ? "; 'sbatch' is not here: submit it where Slurm is, in a folder that both machines see"
+                         : "; submitted as job " + array.job));
+        json.push_back({{"script", array.script.string()},
+                        {"job", array.job.empty() ? nlohmann::json(nullptr) : nlohmann::json(array.job)},
+                        {"cases", array.names}});
+    }
+    return json;
+}
+
+cases::SlurmSubmission submission_of(Shell& shell, const cases::Study& study, const SweepArguments& given) {
     cases::SlurmSubmission what;
     what.only = given.only.empty() ? std::nullopt : std::optional(given.only);
     if (study.sweep) {
@@ -229,18 +257,14 @@ int submit(Shell& shell, const cases::Study& study, const SweepArguments& given)
     what.program = shell.program();
     what.keep_stale = given.stale == "keep";
     what.replace_stale = given.stale == "replace";
+    return what;
+}
+
+int submit(Shell& shell, const cases::Study& study, const SweepArguments& given) {
+    const cases::SlurmSubmission what = submission_of(shell, study, given);
     const auto all = cases::submit_sweep(study, what, shell.progress());
     const auto& arrays = all.arrays;
-    nlohmann::json json = nlohmann::json::array();
-    for (const auto& array : arrays) {
-        shell.print("wrote " + array.script.string() + " of " + core::counted(array.names.size(), "case") +
-                    (array.job.empty()
-                         ? "; 'sbatch' is not here: submit it where Slurm is, in a folder that both machines see"
-                         : "; submitted as job " + array.job));
-        json.push_back({{"script", array.script.string()},
-                        {"job", array.job.empty() ? nlohmann::json(nullptr) : nlohmann::json(array.job)},
-                        {"cases", array.names}});
-    }
+    const nlohmann::json json = print_arrays(shell, arrays);
     nlohmann::json after = nullptr;
     if (all.study) {
         shell.print("wrote " + all.study->script.string() + ", which runs the study when they have ended" +
@@ -279,6 +303,21 @@ int add_shape(Shell& shell, const cases::Study& study, const SweepArguments& giv
     return done;
 }
 
+cases::SweepOptions sweep_options(const SweepArguments& given) {
+    cases::SweepOptions options;
+    options.cores = given.cores.value_or(1);
+    options.retries = given.retries.value_or(0);
+    options.jobs = given.jobs > 0 ? given.jobs : std::max(1, static_cast<int>(core::threads()) / options.cores);
+    options.stale = given.stale == "keep"      ? cases::StaleCases::keep
+                    : given.stale == "replace" ? cases::StaleCases::replace
+                                               : cases::StaleCases::redo;
+    options.submission = given.submission;
+    if (!given.only.empty()) {
+        options.only = given.only;
+    }
+    return options;
+}
+
 int sweep(Shell& shell, const SweepArguments& given) {
     const auto study = cases::Study::open(given.study);
     if (!given.add.empty()) {
@@ -295,17 +334,7 @@ int sweep(Shell& shell, const SweepArguments& given) {
     if (given.engine == "slurm") {
         return submit(shell, study, given);
     }
-    cases::SweepOptions options;
-    options.cores = given.cores.value_or(1);
-    options.retries = given.retries.value_or(0);
-    options.jobs = given.jobs > 0 ? given.jobs : std::max(1, static_cast<int>(core::threads()) / options.cores);
-    options.stale = given.stale == "keep"      ? cases::StaleCases::keep
-                    : given.stale == "replace" ? cases::StaleCases::replace
-                                               : cases::StaleCases::redo;
-    options.submission = given.submission;
-    if (!given.only.empty()) {
-        options.only = given.only;
-    }
+    const cases::SweepOptions options = sweep_options(given);
     const auto outcomes = cases::sweep_locally(study, options, shell.progress());
     int failed = 0;
     int solved = 0;
@@ -364,9 +393,7 @@ void add_solve_command(CLI::App& app, Shell& shell) {
     });
 }
 
-void add_sweep_command(CLI::App& app, Shell& shell) {
-    auto* command = app.add_subcommand("sweep", "CFD of the cases that a study wants and does not have");
-    auto o = std::make_shared<SweepArguments>();
+void add_options(CLI::App* command, const std::shared_ptr<SweepArguments>& o) {
     command->add_option("study", o->study, "folder with study.toml, which has a [sweep]")->required();
     command->add_option("--engine", o->engine, "local: OpenFOAM on this machine; slurm: a job array")
         ->check(CLI::IsMember({"local", "slurm"}))
@@ -418,6 +445,12 @@ void add_sweep_command(CLI::App& app, Shell& shell) {
         "--list", o->list,
         "only say how far each case is: missing, waiting, running (iteration, time left at most), solved, "
         "stale, failed (why), present");
+}
+
+void add_sweep_command(CLI::App& app, Shell& shell) {
+    auto* command = app.add_subcommand("sweep", "CFD of the cases that a study wants and does not have");
+    auto o = std::make_shared<SweepArguments>();
+    add_options(command, o);
     command->footer(
         "Examples:\n"
         "  underbody sweep mystudy --list\n"

@@ -285,6 +285,30 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     return done;
 }
 
+void add_equilibria(CLI::App* table, Shell& shell) {
+    auto eq = std::make_shared<EquilibriaCommand>();
+    CLI::App* eq_command = table->add_subcommand("equilibria", "where lift and net weight balance, and how firmly");
+    eq->table.add_to(*eq_command);
+    eq_command->add_option("--weight", eq->weight,
+                           "net weight: weight less buoyancy, positive sinks (default 0 N, of a model its own)");
+    eq_command->add_option(
+        "--mass", eq->mass,
+        "virtual mass in heave, mass + added mass; gives frequency and kick velocity (of a model its "
+        "own)");
+    eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
+    eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
+    eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");
+    eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    eq_command->add_option("--picture", eq->picture, "writes the curve with its equilibria (.png, .pdf)");
+    eq_command->footer(
+        "Examples:\n"
+        "  underbody table equilibria lift.csv --weight 0.3 --mass 3.954\n"
+        "  underbody table equilibria loads.csv --weight \"30 gf\" --held pitch=1deg --picture eq.png");
+    shell.on(eq_command, [&shell, eq] { return run_equilibria(shell, *eq); });
+}
+
 }  // namespace
 
 void add_table_command(CLI::App& app, Shell& shell) {
@@ -315,27 +339,7 @@ void add_table_command(CLI::App& app, Shell& shell) {
         "gap=8mm,pitch=2deg --json");
     shell.on(at_command, [&shell, at] { return run_at(shell, *at); });
 
-    auto eq = std::make_shared<EquilibriaCommand>();
-    CLI::App* eq_command = table->add_subcommand("equilibria", "where lift and net weight balance, and how firmly");
-    eq->table.add_to(*eq_command);
-    eq_command->add_option("--weight", eq->weight,
-                           "net weight: weight less buoyancy, positive sinks (default 0 N, of a model its own)");
-    eq_command->add_option(
-        "--mass", eq->mass,
-        "virtual mass in heave, mass + added mass; gives frequency and kick velocity (of a model its "
-        "own)");
-    eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
-    eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
-    eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");
-    eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")
-        ->check(CLI::Range(0, 100000))
-        ->capture_default_str();
-    eq_command->add_option("--picture", eq->picture, "writes the curve with its equilibria (.png, .pdf)");
-    eq_command->footer(
-        "Examples:\n"
-        "  underbody table equilibria lift.csv --weight 0.3 --mass 3.954\n"
-        "  underbody table equilibria loads.csv --weight \"30 gf\" --held pitch=1deg --picture eq.png");
-    shell.on(eq_command, [&shell, eq] { return run_equilibria(shell, *eq); });
+    add_equilibria(table, shell);
 
     add_table_analysis(*table, shell);
 }

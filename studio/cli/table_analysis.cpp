@@ -157,6 +157,37 @@ void show_coupled(Shell& shell, const tables::ForceTable& lift, const std::vecto
     }
 }
 
+tables::CoupledOptions coupled_options(const PitchCommand& command, const tables::Held& held) {
+    tables::CoupledOptions options;
+    options.net_weight = option_value("--weight", command.weight, "N");
+    options.trim_torque = command.trim.empty() ? 0 : option_value("--trim", command.trim, "N m");
+    options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
+    options.virtual_inertia = command.inertia.empty() ? 0 : option_value("--inertia", command.inertia, "kg m^2");
+    options.held = held;
+    std::erase_if(options.held, [](const auto& h) { return h.first == "gap"; });  // of the windows; here it is free
+    return options;
+}
+
+nlohmann::json print_no_balance(Shell& shell, const tables::ForceTable& lift, const tables::ForceTable& moment,
+                                const tables::CoupledOptions& options) {
+    const auto trim = tables::trim_range(lift, moment, options);
+    shell.print(trim ? "heave and pitch balance nowhere together: where lift holds the weight, the trim torque "
+                       "would be " +
+                           five_digits(trim->first, 4) + " to " + five_digits(trim->second, 4) + " N m nose up"
+                     : "heave and pitch balance nowhere together: lift holds the weight nowhere");
+    return trim ? nlohmann::json{trim->first, trim->second} : nlohmann::json();
+}
+
+nlohmann::json find_windows(Shell& shell, const PitchCommand& command, const tables::ForceTable& moment,
+                            const tables::Held& held) {
+    const auto found = tables::pitch_windows(moment, held);
+    show_windows(shell, found);
+    if (!command.picture.empty()) {
+        write_picture(tables::pitch_figure(moment, held), command.picture);
+    }
+    return found;
+}
+
 int run_pitch(Shell& shell, const PitchCommand& command) {
     TableOptions table = command.table;
     table.quantity = "pitch_moment";
@@ -171,31 +202,15 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
     document["windows"] = nlohmann::json::array();
     const bool windows = command.weight.empty() || holds("gap");
     if (windows) {
-        const auto found = tables::pitch_windows(moment, held);
-        show_windows(shell, found);
-        document["windows"] = found;
-        if (!command.picture.empty()) {
-            write_picture(tables::pitch_figure(moment, held), command.picture);
-        }
+        document["windows"] = find_windows(shell, command, moment, held);
     }
     if (!command.weight.empty()) {
         table.quantity = "lift_force";
         const auto lift = table.fit(shell, table.is_model() ? &held_for_lift : nullptr);
-        tables::CoupledOptions options;
-        options.net_weight = option_value("--weight", command.weight, "N");
-        options.trim_torque = command.trim.empty() ? 0 : option_value("--trim", command.trim, "N m");
-        options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
-        options.virtual_inertia = command.inertia.empty() ? 0 : option_value("--inertia", command.inertia, "kg m^2");
-        options.held = held;
-        std::erase_if(options.held, [](const auto& h) { return h.first == "gap"; });  // of the windows; here it is free
+        const tables::CoupledOptions options = coupled_options(command, held);
         const auto found = tables::coupled_equilibria(lift, moment, options);
         if (found.empty()) {
-            const auto trim = tables::trim_range(lift, moment, options);
-            shell.print(trim ? "heave and pitch balance nowhere together: where lift holds the weight, the trim torque "
-                               "would be " +
-                                   five_digits(trim->first, 4) + " to " + five_digits(trim->second, 4) + " N m nose up"
-                             : "heave and pitch balance nowhere together: lift holds the weight nowhere");
-            document["trim"] = trim ? nlohmann::json{trim->first, trim->second} : nlohmann::json();
+            document["trim"] = print_no_balance(shell, lift, moment, options);
         }
         show_coupled(shell, lift, found, options.virtual_mass > 0);
         document["equilibria"] = found;
@@ -342,9 +357,7 @@ int run_collapse(Shell& shell, const CollapseCommand& command) {
     return done;
 }
 
-}  // namespace
-
-void add_table_analysis(CLI::App& table, Shell& shell) {
+void add_continue(CLI::App& table, Shell& shell) {
     auto along = std::make_shared<ContinueCommand>();
     CLI::App* sub =
         table.add_subcommand("continue", "equilibria along weight, speed, voltage or an axis, with their folds");
@@ -361,9 +374,11 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
         "Examples:\n  underbody table continue lift.csv --along net_weight=0:0.6 --picture folds.png\n  underbody "
         "table continue lift.csv --weight 0.3 --along speed=0.3:0.8 --reference 0.5");
     shell.on(sub, [&shell, along] { return run_continue(shell, *along); });
+}
 
+void add_pitch(CLI::App& table, Shell& shell) {
     auto pitch = std::make_shared<PitchCommand>();
-    sub = table.add_subcommand(
+    CLI::App* sub = table.add_subcommand(
         "pitch", "stable windows of pitch and their trim; with --weight, balance of heave and pitch together");
     pitch->table.add_to(*sub);
     sub->remove_option(sub->get_option("--quantity"));  // it is the pitch moment, and the lift beside it
@@ -387,9 +402,11 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
         "  underbody table pitch forces.csv --where \"variant=ellipse, mesh=medium\" --held speed=0.5 --weight 0.3 "
         "--trim \"2 mN m\" --mass 3.954 --inertia 0.02");
     shell.on(sub, [&shell, pitch] { return run_pitch(shell, *pitch); });
+}
 
+void add_compare(CLI::App& table, Shell& shell) {
     auto compare = std::make_shared<CompareCommand>();
-    sub = table.add_subcommand("compare", "variants of a table side by side, and which wins");
+    CLI::App* sub = table.add_subcommand("compare", "variants of a table side by side, and which wins");
     compare->table.add_to(*sub);
     sub->add_option("--by", compare->by, "text column that names the variants")->capture_default_str();
     sub->add_option("--measure", compare->measure,
@@ -402,10 +419,12 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
         "Examples:\n  underbody table compare forces.csv --where \"mesh=medium, pitch=0, speed=0.5\" --quantity "
         "drag_force --measure lowest");
     shell.on(sub, [&shell, compare] { return run_compare(shell, *compare); });
+}
 
+void add_collapse(CLI::App& table, Shell& shell) {
     auto collapse = std::make_shared<CollapseCommand>();
-    sub = table.add_subcommand("collapse",
-                               "do forces at several speeds, sizes, jet voltages or flows fall on one curve?");
+    CLI::App* sub = table.add_subcommand(
+        "collapse", "do forces at several speeds, sizes, jet voltages or flows fall on one curve?");
     collapse->table.add_to(*sub);
     sub->add_option("--by", collapse->by,
                     "speed | length | jet_voltage | jet_flow (default: the first of them that varies)");
@@ -416,6 +435,15 @@ void add_table_analysis(CLI::App& table, Shell& shell) {
     sub->add_option("--picture", collapse->picture, "writes the collapsed points over the curve (.png, .pdf)");
     sub->footer("Examples:\n  underbody table collapse forces.csv --where \"variant=ellipse, mesh=medium, pitch=0\"");
     shell.on(sub, [&shell, collapse] { return run_collapse(shell, *collapse); });
+}
+
+}  // namespace
+
+void add_table_analysis(CLI::App& table, Shell& shell) {
+    add_continue(table, shell);
+    add_pitch(table, shell);
+    add_compare(table, shell);
+    add_collapse(table, shell);
 }
 
 }  // namespace underbody::studio
