@@ -13,6 +13,7 @@
 #include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/exports/export.h"
+#include "surrogates/tables/fit/exact_points.h"
 #include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::cases {
@@ -64,8 +65,13 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     for (const auto& remark : mixed) {
         document["remarks"].push_back(remark);
     }
+    bool says_exact = false;
     for (const auto& remark : table.remarks()) {
         document["remarks"].push_back(remark.message);
+        says_exact = says_exact || remark.message.find("taken as exact") != std::string::npos;
+    }
+    if (const std::string exact = tables::exact_points(table); !exact.empty() && !says_exact) {
+        document["remarks"].push_back(exact);
     }
     document["axes"] = nlohmann::json::array();
     for (const auto& axis : table.axes()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/counted.h"
 #include "core/text.h"
 #include "postproc/field/field.h"
 
@@ -130,6 +131,20 @@ core::Problems size_faults(const LoadsReferences& given, const Vector& body, dou
     return faults;
 }
 
+namespace {
+
+/// "'a', 'b', 'c' and 7 more"
+std::string first_names(const std::vector<ConditionedLoads>& cases, const std::vector<std::size_t>& group) {
+    constexpr std::size_t most = 6;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(most, group.size()); ++i) {
+        names += (names.empty() ? "'" : ", '") + cases[group[i]].name + "'";
+    }
+    return names + (group.size() > most ? " and " + std::to_string(group.size() - most) + " more" : "");
+}
+
+}  // namespace
+
 std::vector<std::pair<Problem, std::size_t>> same_loads(const std::vector<ConditionedLoads>& cases) {
     std::map<std::vector<double>, std::vector<std::size_t>> alike;
     for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -140,6 +155,7 @@ std::vector<std::pair<Problem, std::size_t>> same_loads(const std::vector<Condit
         }
     }
     std::vector<std::pair<Problem, std::size_t>> found;
+    std::size_t further = 0, last = 0;
     for (const auto& [loads, group] : alike) {
         std::string differing;
         for (const auto& [name, value] : cases[group.front()].conditions) {
@@ -155,15 +171,26 @@ std::vector<std::pair<Problem, std::size_t>> same_loads(const std::vector<Condit
         if (differing.empty()) {
             continue;
         }
-        std::string names;
-        for (const std::size_t i : group) {
-            names += (names.empty() ? "'" : ", '") + cases[i].name + "'";
+        constexpr std::size_t most_groups = 5;
+        if (found.size() == most_groups) {
+            ++further;
+            last = group.back();
+            continue;
         }
         found.emplace_back(Problem{Problem::Severity::warning,
-                                   names + " have the same loads to the last digit although their conditions differ (" +
+                                   first_names(cases, group) +
+                                       " have the same loads to the last digit although their conditions differ (" +
                                        differing + "): is one file a copy of the other?",
                                    {}},
                            group.back());
+    }
+    if (further > 0) {
+        found.emplace_back(
+            Problem{Problem::Severity::warning,
+                    "and " + core::counted(further, "more group of cases has", "more groups of cases have") +
+                        " the same loads to the last digit although their conditions differ",
+                    {}},
+            last);
     }
     return found;
 }

@@ -32,7 +32,8 @@ struct ConditionedLoads {
     std::vector<double> loads;
 };
 /// A warning for each group of cases whose loads are the same to the last digit although their conditions, other than
-/// the time, differ: copies of one file. Beside it the last of the group, by its place in `cases`.
+/// the time, differ: copies of one file. Beside it the last of the group, by its place in `cases`. Of a group the first
+/// names, of very many groups the first and how many more there are.
 std::vector<std::pair<core::Problem, std::size_t>> same_loads(const std::vector<ConditionedLoads>& cases);
 
 }  // namespace underbody::postproc

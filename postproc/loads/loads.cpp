@@ -10,6 +10,7 @@
 #include "postproc/loads/declared.h"
 #include "postproc/loads/fluid_side.h"
 #include "postproc/loads/loads_reference_point.h"
+#include "postproc/loads/lone_values.h"
 #include "postproc/loads/mirror_plane.h"
 #include "postproc/loads/named_loads.h"
 #include "postproc/loads/vehicle_axes.h"
@@ -60,6 +61,7 @@ public:
             refuse_missing_values(part, field_, result_.file);
         }
         refuse_no_solution(parts_, field_, result_, options_.accept_problems);
+        warn_of_lone_values(parts_, result_);
         settle();
         add_up();
         audit();

@@ -17,6 +17,7 @@
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/linear/trim_error.h"
+#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
@@ -185,15 +186,28 @@ std::string free_in_pitch(const dynamics::Model& model, const dynamics::Conditio
                : "these hold the pitch at 0; free to pitch, the body balances nowhere within the tables\n";
 }
 
+/// What is said of a trim that the force tables do not cover; nothing of one within them.
+core::Problems trim_outside(const dynamics::Model& model, dynamics::Conditions held,
+                            const std::optional<dynamics::HeaveEquilibrium>& at) {
+    if (!at) {
+        return {};
+    }
+    held[dynamics::Channel::gap] = at->gap;
+    held[dynamics::Channel::pitch] = at->pitch;
+    return dynamics::held_outside(model, held);
+}
+
 void heave(const dynamics::Model& model, const dynamics::Conditions& held, const std::vector<double>& q,
            const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
     const char* pitch_held = pitches(model) ? ", pitch held at 0" : "";
     const dynamics::HeavePlant plant(model, held);
+    const bool outside = !trim_outside(model, held, at).empty();
     json["heave"] = nlohmann::json::array();
     for (const dynamics::HeaveEquilibrium& e : trims(dynamics::heave_equilibria(plant), at)) {
         double slope = 0, stiffness = 0;
         const double mass = plant.inertia(e.gap, slope);
         const dynamics::LinearSystem system = dynamics::heave_system(plant, e.gap, &stiffness);
+        stiffness += 0.0;  // no negative zero
         const double damping = -system.a(0, 0) * mass;
         const dynamics::TrimError error = dynamics::heave_trim_error(model, held, e.gap, !at);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave"});
@@ -205,6 +219,7 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
         one["stable"] = stiffness > 0;
         one["pitch_held"] = pitches(model);
         one["stiffness"] = stiffness;
+        one["outside"] = outside;
         one["damping"] = damping;
         one["virtual_mass"] = mass;
         one["force_at_rest"] = trim_force;
@@ -213,7 +228,8 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
         json["heave"].push_back(one);
         text += e.name + (stiffness > 0 ? " (stable" : " (unstable") + pitch_held + ") at " +
                 with_error(1e3 * e.gap, 1e3 * error.gap, 6) + " mm: stiffness " +
-                with_error(stiffness, error.stiffness, 4) + " N/m";
+                with_error(stiffness, error.stiffness, 4) + " N/m" +
+                (outside ? " (outside the tables: that of the ends they hold, its error is not known)" : "");
         text += at ? ", held by " + with_error(-trim_force, error.force, 4) + " N up\n" : "\n";
         text += modes_text(modes, error);
         text += "  LQR: u = -" + core::format_number(gains.velocity_gain, 5) + " N s/m w - " +
@@ -468,6 +484,7 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     const std::vector<double> weights = weights_of(a.weights);
     shell.show(model.remarks);
     shell.show(dynamics::HeavePlant(model, held).left_out_of_small_motions());
+    shell.show(trim_outside(model, held, at));
     nlohmann::json json;
     std::string text;
     add_sweep(a, model, held, json);

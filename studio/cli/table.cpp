@@ -18,6 +18,7 @@
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/exact_points.h"
 #include "surrogates/tables/fit/line.h"
 #include "surrogates/tables/fit/table_batch.h"
 
@@ -47,6 +48,10 @@ int run_fit(Shell& shell, const FitCommand& command) {
         }
         for (const auto& remark : table.remarks()) {
             text += (remark.severity == core::Problem::Severity::note ? "\n  " : "\n  warning: ") + remark.message;
+        }
+        if (const std::string exact = tables::exact_points(table);
+            !exact.empty() && command.table.fit_options().kind != tables::FitOptions::Kind::automatic) {
+            text += "\n  " + exact;  // what chooses the fit says so itself
         }
         shell.print(text);
         document["tables"].push_back(entry);

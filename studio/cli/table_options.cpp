@@ -15,6 +15,7 @@
 #include "surrogates/dynamics/model/force_tables.h"
 #include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/tables/analysis/figures.h"
+#include "surrogates/tables/fit/exact_points.h"
 #include "surrogates/tables/points/select.h"
 
 namespace underbody::studio {
@@ -255,15 +256,26 @@ void TableOptions::describe(nlohmann::json& document) const {
         document["held"][channel_name(held.channel)] = {
             {"value", held.value}, {"unit", channel_unit(held.channel)}, {"from", held.from}};
     }
+    if (!is_model()) {
+        document["points_exact"] = exact_;
+    }
     document["warnings"] = nlohmann::json::array();
     for (const core::Problem& problem : warnings_) {
         document["warnings"].push_back(problem.message);
     }
 }
 
+void TableOptions::say_exact(Shell& shell, const tables::ForceTable& table) const {
+    if (const std::string text = tables::exact_points(table); !text.empty()) {
+        exact_ = true;
+        print_held ? shell.print(text) : shell.info(text);
+    }
+}
+
 tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     if (const auto* known = fitted(shell)) {  // its remarks were said when it was fitted
         keep(known->front().remarks(), warnings_);
+        say_exact(shell, known->front());
         return known->front();
     }
     if (is_model()) {
@@ -272,6 +284,7 @@ tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
     tell(shell, fitted.remarks(), warnings_);
+    say_exact(shell, fitted);
     return fitted;
 }
 
@@ -280,6 +293,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
         for (const auto& table : *known) {
             if (remarks) {
                 keep(table.remarks(), warnings_);
+                say_exact(shell, table);
             }
         }
         return *known;
@@ -293,6 +307,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));
         if (remarks) {
             tell(shell, all.back().remarks(), warnings_);
+            say_exact(shell, all.back());
         }
     }
     return all;

@@ -44,7 +44,8 @@ struct TableOptions {
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true,
                                                           tables::Held* asked = nullptr) const;
     /// Adds `held` (what the forces of a model are taken at beside their axes, and whence) and `warnings` to the JSON
-    /// of a command; of a table its `warnings` alone.
+    /// of a command; of a table its `warnings`, and `points_exact`: whether its points state no errors and are taken as
+    /// exact.
     void describe(nlohmann::json& document) const;
 
 private:
@@ -55,7 +56,10 @@ private:
                                                            tables::Held* asked) const;
     mutable std::vector<dynamics::HeldChannel> held_;  ///< of the model last taken
     mutable core::Problems warnings_;
-    mutable std::string said_;  ///< about what is held, once
+    /// Says, beside the numbers, that points are taken as exact.
+    void say_exact(Shell& shell, const tables::ForceTable& table) const;
+    mutable std::string said_;    ///< about what is held, once
+    mutable bool exact_ = false;  ///< points of a table that was fitted state no errors
 };
 
 /// A value in the unit that the user's file has for the quantity.

@@ -106,5 +106,20 @@ TEST(SameLoads, OfCasesWithOtherConditionsAreToldAsCopies) {
     EXPECT_TRUE(same_loads({{"a", {{"gap", "1"}}, lift}, {"b", {{"gap", "1"}}, lift}}).empty());
 }
 
+TEST(SameLoads, OfManyCopiesAreGathered) {
+    std::vector<ConditionedLoads> one, many;
+    for (int i = 0; i < 40; ++i) {
+        const std::string gap = std::to_string(i);
+        one.push_back({"h" + gap, {{"gap", gap}}, {0.25, 0.6}});
+        many.push_back({"h" + gap, {{"gap", gap}}, {0.1 * (i / 2) + 0.1, 0.6}});
+    }
+    const auto group = same_loads(one), groups = same_loads(many);
+    ASSERT_EQ(group.size(), 1U);
+    EXPECT_THAT(group[0].first.message, HasSubstr("'h4', 'h5' and 34 more have the same loads"));
+    ASSERT_EQ(groups.size(), 6U);  // was: 20
+    EXPECT_THAT(groups[5].first.message, HasSubstr("and 15 more groups of cases have the same loads"));
+    EXPECT_EQ(groups[5].second, 39U);
+}
+
 }  // namespace
 }  // namespace underbody::postproc

@@ -38,6 +38,44 @@ TEST(Loads, OfHydrostaticPressureAreTheBuoyancyAtTheCentroid) {
     }
 }
 
+std::size_t lone_values(const LoadsResult& result, std::string* text = nullptr) {
+    std::size_t count = 0;
+    for (const auto& problem : result.problems) {
+        if (problem.message.find("such a value decides the force") != std::string::npos) {
+            ++count;
+            EXPECT_EQ(problem.severity, core::Problem::Severity::warning);
+            if (text != nullptr) {
+                *text = problem.message;
+            }
+        }
+    }
+    return count;
+}
+
+TEST(Loads, WarnOfAPressureFarFromAllOthers) {
+    const Vector axes = {0.1, 0.07, 0.05};
+    for (const int spikes : {0, 1, 3}) {
+        Field field = field_of({ellipsoid(60, axes, hydrostatic)});
+        auto* values = vtkDoubleArray::SafeDownCast(field.zones[0].surface->GetPointData()->GetArray("pressure"));
+        for (int i = 0; i < spikes; ++i) {
+            values->SetValue(100 + 7 * i, 1e9);
+        }
+        std::string text;
+        EXPECT_EQ(lone_values(loads(field, about({})), &text), spikes > 0 ? 1U : 0U) << text;
+        if (spikes > 0) {
+            EXPECT_THAT(text, HasSubstr("1e+09 Pa at node 100 of zone 'hull'"));
+            EXPECT_EQ(text.find("2 other places") != std::string::npos, spikes == 3) << text;
+        }
+    }
+    // An edge that sucks hard, as flows have it, is none; nor is one pressure everywhere, or two of them.
+    const auto edge = [](const Vector& p) { return 100 / std::pow(std::abs(p[0] - 0.09) + 1e-4, 0.7); };
+    const auto halves = [](const Vector& p) { return p[0] > 0 ? 101325.0 : 0.0; };
+    for (const PointFunction& pressure :
+         {PointFunction(edge), PointFunction(halves), PointFunction([](const Vector&) { return 5.0; })}) {
+        EXPECT_EQ(lone_values(loads(field_of({ellipsoid(60, axes, pressure)}), about({}))), 0U);
+    }
+}
+
 TEST(Loads, ConvergeToTheBuoyancyWithTheSecondOrder) {
     const double exact = rho * g * 4 * M_PI / 3 * 1e-3;
     double last = 0;

@@ -66,6 +66,20 @@ TEST_F(ModelForces, TableAndLinearStateOneErrorOfAStiffness) {
     }
 }
 
+TEST_F(ModelForces, AStiffnessOutsideTheTablesIsSaidToBeThatOfTheirEnds) {
+    for (const auto& [at, outside] : {std::pair{"gap=20mm", false}, {"gap=80mm", true}}) {
+        const auto text = run_underbody({"linear", "model.toml", "--at", at}, folder_.path());
+        EXPECT_EQ(text.output.find("N/m (outside the tables") != std::string::npos, outside) << text.output;
+        EXPECT_EQ(text.output.find("is outside the lift_force table") != std::string::npos, outside) << text.output;
+        EXPECT_THAT(text.output, testing::Not(HasSubstr("stiffness -0 ")));
+        const nlohmann::json document = json({"linear", "model.toml", "--at", at});
+        EXPECT_EQ(document["heave"][0]["outside"], outside);
+        EXPECT_EQ(document.value("warnings", nlohmann::json::array()).dump().find("is outside") != std::string::npos,
+                  outside);
+    }
+    EXPECT_EQ(json({"linear", "model.toml"})["heave"][0]["outside"], false);
+}
+
 TEST_F(ModelForces, WhatHoldsAForceAtItsReferenceIsSaid) {
     core::write_file(folder_.path() / "one.csv", "gap [mm], lift_force [mN]\n1, 80\n5, 20\n20, 2\n");
     core::write_file(folder_.path() / "scaled.toml",

@@ -44,6 +44,49 @@ TEST(TableCommand, GivesValuesEquilibriaAndTheirJson) {
     EXPECT_THAT(run.output, HasSubstr(" mm"));
 }
 
+TEST(TableCommand, PointsWithoutErrorsAreSaidToBeExactWhereAnErrorIsRead) {
+    core::TemporaryFolder folder;
+    const std::string said = "points of lift_force state no errors and are taken as exact";
+    core::write_file(folder.path() / "with.csv", lift);
+    core::write_file(folder.path() / "without.csv",
+                     "gap [mm], lift_force [N]\n1, .66\n2, .4\n3, .296\n5, .27\n10, .297\n20, .324\n50, .346\n");
+    for (const bool exact : {false, true}) {
+        const std::string file = exact ? "without.csv" : "with.csv";
+        const auto expected = [&] {
+            return exact ? testing::Matcher<std::string>(HasSubstr(said)) : testing::Not(HasSubstr(said));
+        };
+        for (const std::vector<std::string>& command : {std::vector<std::string>{"table", "at", file, "gap=4mm"},
+                                                        {"table", "equilibria", file, "--weight", "0.3"}}) {
+            EXPECT_THAT(run_underbody(command, folder.path()).output, expected()) << command[1];
+            auto json = command;
+            json.emplace_back("--json");
+            EXPECT_EQ(nlohmann::json::parse(run_underbody(json, folder.path()).output)["points_exact"], exact);
+        }
+        EXPECT_THAT(run_underbody({"table", "fit", file, "--kind", "interpolation"}, folder.path()).output, expected());
+        for (const char* format : {"lift.h", "lift.csv", "lift.json"}) {
+            ASSERT_EQ(run_underbody({"export", file, "--out", format, "--force"}, folder.path()).exit_code, 0);
+            EXPECT_THAT(core::read_file(folder.path() / format), expected()) << format;
+        }
+        // Read back, it says so again, once.
+        ASSERT_EQ(run_underbody({"export", "lift.csv", "--out", "again.csv", "--force"}, folder.path()).exit_code, 0);
+        const std::string again = core::read_file(folder.path() / "again.csv");
+        EXPECT_THAT(again, expected());
+        EXPECT_EQ(again.find(said), again.rfind(said));
+    }
+}
+
+TEST(TableCommand, RefusesForcesThatAreNoNumbersOfThisWorld) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "huge.csv", "gap [mm], lift_force [N]\n1, 2\n2, 1e300\n3, -1e300\n");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"table", "fit", "huge.csv"}, {"export", "huge.csv", "--out", "huge.h"}}) {
+        const auto run = run_underbody(command, folder.path());
+        EXPECT_EQ(run.exit_code, 3);
+        EXPECT_THAT(run.errors, HasSubstr("huge.csv:3:2: lift_force is 1e+300 here"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "huge.h"));  // was: written, with nan in it
+}
+
 TEST(TableCommand, SaysWhatIsWrong) {
     core::TemporaryFolder folder;
     core::write_file(folder.path() / "lift.csv", lift);

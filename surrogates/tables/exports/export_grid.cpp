@@ -9,6 +9,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/tables/fit/exact_points.h"
 #include "surrogates/tables/fit/force_table_impl.h"
 #include "surrogates/tables/fit/hull.h"
 #include "surrogates/tables/fit/line.h"
@@ -167,6 +168,12 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
         }
         for (auto&& line : settled_lines(tables[i].points())) {
             said.push_back(std::move(line));
+        }
+        if (std::string line = exact_points(tables[i]); !line.empty()) {
+            line[0] = 'T';
+            if (std::find(said.begin(), said.end(), line) == said.end()) {  // an exported table says it already
+                said.push_back(std::move(line));
+            }
         }
         quantity.told.insert(quantity.told.end(), said.begin(), said.end());
         if (quantity.difference > 0) {

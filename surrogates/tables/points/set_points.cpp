@@ -75,6 +75,9 @@ Spread spread_of(const std::vector<double>& values) {
     return spread;
 }
 
+/// Squares and slopes of values below this are finite in double, the values themselves in float.
+constexpr double most_taken = 1e30;
+
 /// Rows that have the quantity, or an error.
 core::Table usable_rows(const core::Table& table, const std::string& quantity, core::Problems& remarks) {
     const auto& values = table.numbers(quantity);
@@ -87,6 +90,13 @@ core::Table usable_rows(const core::Table& table, const std::string& quantity, c
         }
         if (!std::isfinite(values[i])) {
             throw InputError("range", quantity + " is not finite", table.place(i, quantity));
+        }
+        if (std::abs(values[i]) > most_taken) {
+            throw InputError(
+                "range",
+                quantity + " is " + core::format_number(values[i], 4) +
+                    " here: no force and no moment is that large, and what is computed with it is not finite",
+                table.place(i, quantity), "take the row out, or mend its number or its unit");
         }
         rows.push_back(i);
     }
