@@ -353,8 +353,8 @@ private:
                 double nearest = HUGE_VAL;
                 for (auto i = here.begin(); i != here.end(); ++i) {
                     for (auto j = there.begin(); j != there.end(); ++j) {
-                        if (std::abs(i->first - j->first) < nearest) {
-                            nearest = std::abs(i->first - j->first);
+                        if (std::abs((*i)->gap - (*j)->gap) < nearest) {
+                            nearest = std::abs((*i)->gap - (*j)->gap);
                             from = i;
                             to = j;
                         }
@@ -363,34 +363,48 @@ private:
                 if (from == here.end()) {
                     (here.empty() ? to = there.begin() : from = here.begin());
                 }
-                Moved gap{stable ? "stable gap" : "unstable gap", "m", unknown, unknown, unknown, unknown, 0, {}};
-                if (from != here.end()) {
-                    gap.a = from->first;
-                    gap.sigma_a = from->second;
-                    here.erase(from);
-                }
-                if (to != there.end()) {
-                    gap.b = to->first;
-                    gap.sigma_b = to->second;
-                    there.erase(to);
-                }
-                gap.size = std::max(std::isnan(gap.a) ? 0 : std::abs(gap.a), std::isnan(gap.b) ? 0 : std::abs(gap.b));
-                judge(gap);
-                moved.push_back({gap, result});
+                compare_equilibrium(result, from != here.end() ? *from : nullptr, to != there.end() ? *to : nullptr,
+                                    stable ? "stable gap" : "unstable gap", moved);
+                from = from != here.end() ? here.erase(from) : from;
+                to = to != there.end() ? there.erase(to) : to;
             }
         }
     }
 
-    /// Gap and its error (NaN: not known) of each.
-    static std::vector<std::pair<double, double>> equilibria_of(const std::vector<EquilibriumResult>& all,
-                                                                bool stable) {
-        std::vector<std::pair<double, double>> gaps;
+    /// Its gap; and of one that both sides have, stiffness and frequency.
+    static void compare_equilibrium(const std::string& result, const EquilibriumResult* a, const EquilibriumResult* b,
+                                    const std::string& name, std::vector<MovedResult>& moved) {
+        const auto add = [&](const std::string& what, const char* unit, double EquilibriumResult::*value,
+                             double EquilibriumResult::*sigma) {
+            const auto of = [](const EquilibriumResult* one, double EquilibriumResult::*member) {
+                return one != nullptr ? one->*member : unknown;
+            };
+            const auto error = [&](const EquilibriumResult* one) {
+                return of(one, sigma) > 0 ? of(one, sigma) : unknown;
+            };
+            Moved one{what, unit, of(a, value), of(b, value), error(a), error(b), 0, {}};
+            one.size = std::max(std::isnan(one.a) ? 0 : std::abs(one.a), std::isnan(one.b) ? 0 : std::abs(one.b));
+            judge(one);
+            moved.push_back({one, result});
+        };
+        add(name, "m", &EquilibriumResult::gap, &EquilibriumResult::sigma);
+        if (a == nullptr || b == nullptr) {
+            return;
+        }
+        add("stiffness at the " + name, "N/m", &EquilibriumResult::stiffness, &EquilibriumResult::stiffness_sigma);
+        if (a->stable && a->frequency > 0 && b->frequency > 0) {
+            add("frequency at the " + name, "Hz", &EquilibriumResult::frequency, &EquilibriumResult::frequency_sigma);
+        }
+    }
+
+    static std::vector<const EquilibriumResult*> equilibria_of(const std::vector<EquilibriumResult>& all, bool stable) {
+        std::vector<const EquilibriumResult*> found;
         for (const auto& point : all) {
             if (point.stable == stable) {
-                gaps.emplace_back(point.gap, point.sigma > 0 ? point.sigma : unknown);
+                found.push_back(&point);
             }
         }
-        return gaps;
+        return found;
     }
 
     // --- maps

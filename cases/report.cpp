@@ -242,14 +242,17 @@ private:
         for (const auto& point : table.equilibria) {
             rows.push_back({shown(point.gap, "m", "mm"), point.sigma > 0 ? shown(point.sigma, "m", "mm", 2) : "-",
                             point.stable ? "stable" : "unstable", shown(point.stiffness, "N/m", "N/m"),
+                            point.stiffness_sigma > 0 ? shown(point.stiffness_sigma, "N/m", "N/m", 2) : "-",
                             point.stable ? shown(point.frequency, "Hz", "Hz") : "-",
+                            point.frequency_sigma > 0 ? shown(point.frequency_sigma, "Hz", "Hz", 2) : "-",
                             point.stable ? shown(point.kick_velocity, "m/s", "mm/s") : "-"});
         }
         if (rows.empty()) {
             page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
             return;
         }
-        page_.table({"gap (mm)", "± (mm)", "kind", "stiffness (N/m)", "frequency (Hz)", "largest kick survived (mm/s)"},
+        page_.table({"gap (mm)", "± (mm)", "kind", "stiffness (N/m)", "± (N/m)", "frequency (Hz)", "± (Hz)",
+                     "largest kick survived (mm/s)"},
                     rows,
                     "Where lift balances a net weight of " + shown(net_weight, "N", "N") +
                         " N. The kick is the upward or downward velocity from which the body still comes back.");

@@ -15,7 +15,16 @@ namespace {
 double number(const json& value) { return value.is_null() ? std::nan("") : value.get<double>(); }
 
 EquilibriumResult equilibrium(const json& point) {
-    return {number(point.at("gap")), point.at("stable").get<bool>(), number(point.at("stiffness"))};
+    EquilibriumResult one;
+    one.gap = number(point.at("gap"));
+    one.stable = point.at("stable").get<bool>();
+    one.stiffness = number(point.at("stiffness"));
+    one.sigma = number(point.value("sigma", json()));
+    one.stiffness_sigma = number(point.value("stiffness_sigma", json()));
+    one.frequency = frequency_in_hertz(point);
+    one.frequency_sigma = frequency_in_hertz(point, "frequency_sigma");
+    one.kick_velocity = number(point.value("kick_velocity", json()));
+    return one;
 }
 
 std::vector<std::string> texts(const json& list) { return list.get<std::vector<std::string>>(); }
@@ -26,8 +35,8 @@ const MeshResult::Quantity* MeshResult::find(const std::string& quantity) const 
     return find_result(quantities, quantity);
 }
 
-double frequency_in_hertz(const json& equilibrium) {
-    const double frequency = number(equilibrium.at("frequency"));
+double frequency_in_hertz(const json& equilibrium, const std::string& key) {
+    const double frequency = number(equilibrium.value(key, json()));
     return equilibrium.value("frequency_unit", "Hz") == "rad/s" ? frequency / (2 * std::numbers::pi) : frequency;
 }
 
@@ -40,11 +49,7 @@ TableResult table_result(const std::string& name, const json& document) {
     table.remarks = texts(document.at("remarks"));
     if (document.contains("equilibria")) {  // only with a net weight
         for (const auto& point : document.at("equilibria")) {
-            EquilibriumResult one = equilibrium(point);
-            one.sigma = number(point.at("sigma"));
-            one.frequency = frequency_in_hertz(point);
-            one.kick_velocity = number(point.at("kick_velocity"));
-            table.equilibria.push_back(one);
+            table.equilibria.push_back(equilibrium(point));
         }
     }
     for (const auto& file : document.at("exports")) {

@@ -16,9 +16,11 @@ struct EquilibriumResult {
     double gap = 0;
     bool stable = false;
     double stiffness = 0;
-    double sigma = std::numeric_limits<double>::quiet_NaN();          ///< of the gap; 0: the table has no error
-    double frequency = std::numeric_limits<double>::quiet_NaN();      ///< Hz
-    double kick_velocity = std::numeric_limits<double>::quiet_NaN();  ///< m/s
+    double sigma = std::numeric_limits<double>::quiet_NaN();            ///< of the gap; 0: the table has no error
+    double stiffness_sigma = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not known
+    double frequency = std::numeric_limits<double>::quiet_NaN();        ///< Hz
+    double frequency_sigma = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not known
+    double kick_velocity = std::numeric_limits<double>::quiet_NaN();    ///< m/s
 };
 
 /// A [[table]].
@@ -77,8 +79,9 @@ struct VerifyResult {
     double tolerance = 0;
 };
 
-/// Of an equilibrium's document, whose `frequency_unit` says in what it is given (without one: Hz). NaN: not known.
-double frequency_in_hertz(const nlohmann::json& equilibrium);
+/// Of an equilibrium's document, whose `frequency_unit` says in what it is given (without one: Hz); `key`: frequency or
+/// frequency_sigma. NaN: not known.
+double frequency_in_hertz(const nlohmann::json& equilibrium, const std::string& key = "frequency");
 
 // Out of the documents of the steps. A missing key throws nlohmann::json::out_of_range, a wrong type type_error:
 // defects.

@@ -48,6 +48,7 @@ tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
     tables::EquilibriumOptions options;
     options.net_weight = spec.net_weight.value_or(0);
     options.virtual_mass = spec.virtual_mass;
+    options.draws = tables::usual_draws;
     return options;
 }
 

@@ -145,9 +145,13 @@ void of_equilibrium(const json& point, Facts& facts) {
     facts.member(point, "gap", name, "m");
     facts.member(point, "sigma", "standard deviation of the " + name, "m");
     facts.member(point, "stiffness", "stiffness at the " + name, "N/m");
+    facts.member(point, "stiffness_sigma", "standard deviation of the stiffness at the " + name, "N/m");
     if (point.value("stable", false)) {
         if (point.contains("frequency") && point.at("frequency").is_number()) {
             facts.number("frequency at the " + name, frequency_in_hertz(point), "Hz");
+            if (const double sigma = frequency_in_hertz(point, "frequency_sigma"); sigma > 0) {
+                facts.number("standard deviation of the frequency at the " + name, sigma, "Hz");
+            }
         }
         facts.member(point, "kick_velocity", "kick velocity at the " + name, "m/s", "mm/s");
     }

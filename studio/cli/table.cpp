@@ -169,7 +169,7 @@ struct EquilibriaCommand {
     std::string held;
     std::string picture;
     double scale = 1;
-    int draws = 200;
+    int draws = tables::usual_draws;
 };
 
 /// The kick from which a vehicle that comes back leaves the table on its way; 0 where none does.

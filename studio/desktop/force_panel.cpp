@@ -8,12 +8,14 @@
 #include <QLabel>
 #include <QSignalBlocker>
 #include <QTableWidget>
+#include <QTimer>
 #include <algorithm>
 #include <cmath>
 
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/jobs.h"
 #include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
@@ -71,9 +73,9 @@ void ForcePanel::build() {
     right->addWidget(plot_, 1);
     connect(plot_, &PlotView::hovered, this, &Panel::remark);
     connect(plot_, &PlotView::clicked, this, &ForcePanel::point_clicked);
-    list_ = new QTableWidget(0, 7);
-    list_->setHorizontalHeaderLabels(
-        {"gap (mm)", "± (mm)", "stability", "stiffness (N/m)", "frequency (Hz)", "largest kick (mm/s)", "remark"});
+    list_ = new QTableWidget(0, 9);
+    list_->setHorizontalHeaderLabels({"gap (mm)", "± (mm)", "stability", "stiffness (N/m)", "± (N/m)", "frequency (Hz)",
+                                      "± (Hz)", "largest kick (mm/s)", "remark"});
     list_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     list_->verticalHeader()->hide();
     list_->horizontalHeader()->setStretchLastSection(true);
@@ -81,6 +83,9 @@ void ForcePanel::build() {
     list_->verticalHeader()->setDefaultSectionSize(22);
     list_->setSelectionBehavior(QAbstractItemView::SelectRows);
     right->addWidget(list_);
+    at_rest_ = new QTimer(this);
+    at_rest_->setSingleShot(true);
+    at_rest_->setInterval(200);
     plot_->show_text("Open a study with force tables");
 }
 
@@ -311,6 +316,8 @@ void ForcePanel::redraw() {
     const std::string second = view().value(2).toStdString();
     list_->setRowCount(0);
     list_->hide();
+    at_rest_->stop();
+    jobs_.cancel("equilibria");
     reach_->clear();
     try {
         if (view().value(0) == "map") {
@@ -362,8 +369,31 @@ void ForcePanel::point_clicked(double x, double y) {
     }
 }
 
-void ForcePanel::list_equilibria(const tables::EquilibriumOptions& options) {
-    const auto found = tables::equilibria(*table_, options);
+/// The errors are out of drawn tables, as in the report: of one axis at once, of more, which takes some tenths of a
+/// second, when the sliders have come to rest.
+void ForcePanel::list_equilibria(tables::EquilibriumOptions options) {
+    const bool at_once = table_->axes().size() == 1;
+    options.draws = at_once ? tables::usual_draws : 0;
+    show_equilibria(tables::equilibria(*table_, options));
+    options.draws = tables::usual_draws;
+    at_rest_->disconnect();
+    connect(at_rest_, &QTimer::timeout, this, [this, table = table_, options] {
+        jobs_.start(
+            "equilibria", "errors of the equilibria",
+            [this, table, options](core::Progress&) {
+                const auto found = std::make_shared<const tables::Equilibria>(tables::equilibria(*table, options));
+                return [this, table, found] {
+                    if (table == table_) {
+                        show_equilibria(*found);
+                    }
+                };
+            },
+            true);
+    });
+    at_once ? at_rest_->stop() : at_rest_->start();
+}
+
+void ForcePanel::show_equilibria(const tables::Equilibria& found) {
     if (found.all.empty()) {
         reach_->setText(
             QString("No equilibrium in the table's range: the net force is %1 N at its lower and %2 N at its "
@@ -373,17 +403,20 @@ void ForcePanel::list_equilibria(const tables::EquilibriumOptions& options) {
     list_->setRowCount(static_cast<int>(found.all.size()));
     for (int row = 0; row < list_->rowCount(); ++row) {
         const auto& one = found.all[static_cast<std::size_t>(row)];
-        const bool stable = one.stability == tables::Stability::stable;
+        const bool moves = one.stability == tables::Stability::stable && found.virtual_mass > 0;
+        const auto error = [](const std::optional<double>& sigma) { return number(sigma.value_or(NAN), 2); };
         const QStringList cells = {number(1000 * one.gap),
                                    number(1000 * one.sigma, 2),
                                    qt(tables::to_string(one.stability)),
                                    number(one.stiffness),
-                                   stable && options.virtual_mass > 0 ? number(one.frequency, 3) : "–",
-                                   stable && options.virtual_mass > 0 ? number(1000 * one.kick_velocity, 3) : "–",
+                                   error(one.stiffness_sigma),
+                                   moves ? number(one.frequency, 3) : "–",
+                                   error(one.frequency_sigma),
+                                   moves ? number(1000 * one.kick_velocity, 3) : "–",
                                    one.limited_by_range ? "limited by the range of the table" : ""};
         for (int column = 0; column < cells.size(); ++column) {
             auto* item = new QTableWidgetItem(cells[column]);
-            item->setTextAlignment(column == 2 || column == 6 ? Qt::AlignLeft | Qt::AlignVCenter
+            item->setTextAlignment(column == 2 || column == 8 ? Qt::AlignLeft | Qt::AlignVCenter
                                                               : Qt::AlignRight | Qt::AlignVCenter);
             list_->setItem(row, column, item);
         }

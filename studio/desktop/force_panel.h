@@ -11,9 +11,11 @@ class QComboBox;
 class QFormLayout;
 class QLabel;
 class QTableWidget;
+class QTimer;
 
 namespace underbody::tables {
 class ForceTable;
+struct Equilibria;
 struct EquilibriumOptions;
 struct FigureOptions;
 }  // namespace underbody::tables
@@ -56,7 +58,8 @@ private:
     void fill_axes();
     void fill_held();
     void redraw();
-    void list_equilibria(const tables::EquilibriumOptions& options);
+    void list_equilibria(tables::EquilibriumOptions options);
+    void show_equilibria(const tables::Equilibria& found);
     [[nodiscard]] QStringList view() const;
     [[nodiscard]] const TableView& settings() const;
     [[nodiscard]] bool has_weight() const;
@@ -77,6 +80,7 @@ private:
     QLabel* reach_ = nullptr;
     PlotView* plot_ = nullptr;
     QTableWidget* list_ = nullptr;
+    QTimer* at_rest_ = nullptr;  ///< runs out when no slider has moved for a while
     std::vector<Held> held_;
     QString held_for_;
     QFormLayout* held_form_ = nullptr;

@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/compare_studies.h"
+#include "cases/why.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "surrogates/tables/analysis/equilibria.h"
 #include "tests/support/small_study.h"
 
 namespace underbody::cases {
@@ -96,7 +98,7 @@ TEST_F(CompareStudies, LoadsAreRankedByTheirJointErrorsTablesAndEquilibriaToo) {
     EXPECT_GT(c.tables[0].at[0].second, 0.0055);
     // Lift falls by 100 N/m: the gap at which it holds 0.35 N moves by half a millimetre. Its error is that of the
     // force, 7 mN in both, over the slope.
-    ASSERT_EQ(c.equilibria.size(), 1U);
+    ASSERT_EQ(c.equilibria.size(), 3U);
     const Moved& gap = c.equilibria[0].value;
     EXPECT_EQ(c.equilibria[0].result, "table/lift");
     EXPECT_NEAR(gap.a, 0.0035, 1e-6);
@@ -114,6 +116,53 @@ TEST_F(CompareStudies, LoadsAreRankedByTheirJointErrorsTablesAndEquilibriaToo) {
     EXPECT_EQ(json["loads"][0]["shift"], "beyond its error");
     EXPECT_EQ(json["beyond"].get<std::size_t>(), c.beyond());
     EXPECT_EQ(json["tables"][0]["at"].size(), 1U);
+}
+
+// What `table equilibria` states of the study's points is what its results, its report, the way back and a comparison
+// say.
+TEST_F(CompareStudies, StiffnessAndFrequencyHaveOneErrorInReportOriginAndComparison) {
+    const fs::path folder = campaign("a", 0, "x");
+    const Side a = side(folder), b = side(campaign("b", 0.002, "x"));
+    const TableSpec& spec = a.study.tables.front();
+    tables::EquilibriumOptions wanted;
+    wanted.net_weight = spec.net_weight.value();
+    wanted.virtual_mass = spec.virtual_mass;
+    wanted.draws = tables::usual_draws;
+    const auto fit = tables::ForceTable::fit(table_points(spec, a.results), spec.quantity, fit_options(spec));
+    const tables::Equilibrium stated = tables::equilibria(fit, wanted).all.at(0);
+    const double stiffness = stated.stiffness_sigma.value(), frequency = stated.frequency_sigma.value();
+    EXPECT_GT(stiffness, 1);
+    // f goes with the root of the stiffness.
+    EXPECT_NEAR(frequency / stated.frequency, 0.5 * stiffness / stated.stiffness, 0.1 * frequency / stated.frequency);
+    const EquilibriumResult& result = a.results.tables.at(0).equilibria.at(0);
+    EXPECT_EQ(result.stiffness_sigma, stiffness);
+    EXPECT_EQ(result.frequency_sigma, frequency);
+
+    RunOptions options;
+    options.pictures = false;
+    const StudyResults reported = run_study(a.study, options);
+    const std::string page = core::read_file(reported.report);
+    const auto cell = [&](double value, int digits) {
+        return "<td class=\"num\">" + core::format_number(value, digits) + "</td>";
+    };
+    EXPECT_THAT(page, HasSubstr(cell(stated.stiffness, 3) + cell(stiffness, 2)));
+    EXPECT_THAT(page, HasSubstr(cell(stated.frequency, 3) + cell(frequency, 2)));
+
+    const Way way = way_back(a.study, options, "table/lift");
+    const auto* fact = way.origins.front().fact("standard deviation of the stiffness at the stable gap");
+    ASSERT_NE(fact, nullptr);
+    EXPECT_EQ(fact->number.value(), stiffness);
+    fact = way.origins.front().fact("standard deviation of the frequency at the stable gap");
+    ASSERT_NE(fact, nullptr);
+    EXPECT_EQ(fact->number.value(), frequency);
+
+    const StudyComparison c = compare(a, b);
+    ASSERT_EQ(c.equilibria.size(), 3U);
+    EXPECT_EQ(c.equilibria[1].value.name, "stiffness at the stable gap");
+    EXPECT_EQ(c.equilibria[1].value.sigma_a, stiffness);
+    EXPECT_EQ(c.equilibria[1].value.shift, Shift::same) << "both fall by 100 N/m";
+    EXPECT_EQ(c.equilibria[2].value.name, "frequency at the stable gap");
+    EXPECT_EQ(c.equilibria[2].value.sigma_a, frequency);
 }
 
 TEST_F(CompareStudies, WhatIsTheSameDoesNotMoveAndALargeErrorHidesASmallShift) {

@@ -17,6 +17,9 @@
 
 namespace underbody::tables {
 
+/// Tables drawn for the errors that equilibria are told with, wherever they are told: one number of draws, one error.
+constexpr int usual_draws = 200;
+
 struct EquilibriumOptions {
     double net_weight = 0;    ///< N, weight less buoyancy less constant thrust up; positive sinks
     double virtual_mass = 0;  ///< kg, mass + added mass in heave (S_z); 0: no frequency and no kick velocity

@@ -334,6 +334,37 @@ TEST_F(Window, ATableIsFittedAsTheStudySays) {
         << panel<ForcePanel>().table()->kind();
 }
 
+// The errors of the tables' page are those of the report, and follow the net weight.
+TEST_F(Window, EquilibriaStandWithTheErrorsOfTheReport) {
+    const fs::path folder = copy_of_study();
+    std::string text = core::read_file(folder / "study.toml");
+    text.insert(text.find("net_weight"), "relative_sigma = 0.01\n");
+    core::write_file(folder / "study.toml", text);
+    cases::RunOptions options;
+    options.pictures = false;
+    const auto results = cases::run_study(cases::Study::open(folder), options);
+    open(folder);
+    act("workspace tables");
+    settle(*window_);
+    const auto& known = results.tables.front().equilibria;
+    ASSERT_FALSE(known.empty());
+    const auto* list = panel<ForcePanel>().findChild<QTableWidget*>();
+    ASSERT_NE(list, nullptr);
+    ASSERT_EQ(list->rowCount(), static_cast<int>(known.size()));
+    const auto shown = [](double value) { return QString::fromStdString(core::format_number(value, 2)); };
+    for (int row = 0; row < list->rowCount(); ++row) {
+        const auto& one = known[static_cast<std::size_t>(row)];
+        ASSERT_GT(one.stiffness_sigma, 0);
+        EXPECT_EQ(list->item(row, 4)->text(), shown(one.stiffness_sigma));
+        EXPECT_EQ(list->item(row, 6)->text(), one.frequency_sigma > 0 ? shown(one.frequency_sigma) : QString("–"));
+    }
+    const QString before = list->item(0, 4)->text();
+    act("table lift net_weight=0.2N");
+    settle(*window_);
+    ASSERT_GT(list->rowCount(), 0);
+    EXPECT_NE(list->item(0, 4)->text(), before);
+}
+
 TEST_F(Window, AWeightOutOfReachIsSaid) {
     open(computed_study());
     act("workspace tables");
