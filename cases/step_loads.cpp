@@ -182,8 +182,8 @@ Value compute_loads(Engine& engine, const Case& entry) {
     return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(columns, settled, problems)};
 }
 
-/// Copies of one file under several names: a warning with the last of each.
-void warn_of_copies(const Study& study, std::vector<CaseLoads>& all) {
+/// Copies of one file under several names, a warning with the last of each; a file in another unit than the rest.
+void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
     std::vector<postproc::ConditionedLoads> cases;
     std::vector<std::size_t> place;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -203,7 +203,7 @@ void warn_of_copies(const Study& study, std::vector<CaseLoads>& all) {
         cases.push_back(std::move(one));
         place.push_back(i);
     }
-    for (const auto& [problem, last] : postproc::same_loads(cases)) {
+    for (const auto& [problem, last] : postproc::odd_loads(cases)) {
         CaseLoads& loads = all[place[last]];
         loads.warnings.push_back(problem);
         loads.warnings.back().place.file = loads.file;
@@ -323,7 +323,7 @@ void find_loads(Engine& engine) {
             }
         },
         engine.progress);
-    warn_of_copies(engine.study, all);
+    warn_of_odd_ones(engine.study, all);
     // Steps came from many threads: give them the order of the cases.
     auto& steps = engine.results.steps;
     std::stable_sort(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(),

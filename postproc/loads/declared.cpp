@@ -110,6 +110,27 @@ std::optional<Problem> gap_fault(const Field& field, const LoadsResult& loads, d
                    {loads.file, {}, {}, {}}};
 }
 
+std::optional<Problem> base_fault(const LoadsResult& loads, const std::string& base) {
+    Vector area{};
+    std::string names;
+    for (const auto& zone : loads.zones) {
+        if (matches(base, zone.name)) {
+            area = plus(area, zone.area_vector);
+            names += (names.empty() ? "'" : ", '") + zone.name + "'";
+        }
+    }
+    const double size = norm(area), down = size > 0 ? -dot(area, loads.up) / size : 1;
+    constexpr double open = 0.5;
+    if (loads.dimension != 3 || size < 1e-3 * loads.area || down > 0.5 || (down < -0.5 && loads.closure > open)) {
+        return {};
+    }
+    return Problem{Problem::Severity::warning,
+                   "the base (zone " + names + ") faces " + (down < -0.5 ? "up" : "sideways") +
+                       ": is up another direction of the file, or have two columns of coordinates changed places? The "
+                       "sign of the lift and the gap rest on it",
+                   {loads.file, {}, {}, {}}};
+}
+
 core::Problems size_faults(const LoadsReferences& given, const Vector& body, double limit, const core::Place& place) {
     const std::array<std::pair<const char*, std::optional<double>>, 3> sizes = {
         {{"length", given.length}, {"width", given.width}, {"height", given.height}}};
@@ -193,6 +214,77 @@ std::vector<std::pair<Problem, std::size_t>> same_loads(const std::vector<Condit
             last);
     }
     return found;
+}
+
+namespace {
+
+/// Of each case, its force over the square of its speed where all state one; 0: no force, or none that is known.
+std::vector<double> force_sizes(const std::vector<ConditionedLoads>& cases) {
+    std::vector<double> sizes, squares;
+    for (const auto& one : cases) {
+        double square = 0;
+        for (std::size_t k = 0; k < std::min<std::size_t>(3, one.loads.size()); ++k) {
+            square += one.loads[k] * one.loads[k];
+        }
+        sizes.push_back(std::isfinite(square) ? std::sqrt(square) : 0);
+        for (const auto& [name, value] : one.conditions) {
+            const double speed = name == "speed" ? core::parse_number(value).value_or(0) : 0;
+            if (speed > 0) {
+                squares.push_back(speed * speed);
+            }
+        }
+    }
+    for (std::size_t i = 0; squares.size() == sizes.size() && i < sizes.size(); ++i) {
+        sizes[i] /= squares[i];
+    }
+    return sizes;
+}
+
+}  // namespace
+
+std::vector<std::pair<Problem, std::size_t>> other_sizes(const std::vector<ConditionedLoads>& cases) {
+    constexpr double far = 300, thousand = 1000, slack = 1.3;
+    const std::vector<double> sizes = force_sizes(cases);
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        if (sizes[i] > 0) {
+            order.push_back(i);
+        }
+    }
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] < sizes[b]; });
+    std::vector<std::pair<Problem, std::size_t>> found;
+    const std::size_t few = order.size() < 4 ? 0 : order.size() / 3;
+    const auto tell = [&](std::size_t from, std::size_t to, double ratio) {
+        for (std::size_t k = from; k < to; ++k) {
+            found.emplace_back(
+                Problem{Problem::Severity::warning,
+                        "'" + cases[order[k]].name + "' has forces " + core::format_number(ratio, 3) +
+                            " times those of every other case: is its pressure in another unit, or over density?",
+                        {}},
+                order[k]);
+        }
+    };
+    for (std::size_t k = 1; k <= few; ++k) {
+        const std::size_t n = order.size();
+        const double above = sizes[order[n - k]] / sizes[order[n - k - 1]];
+        const double below = sizes[order[k]] / sizes[order[k - 1]];
+        if (above > far) {
+            tell(n - k, n, above);
+        }
+        // A force that passes through nought may be as small as it likes; one read in kPa is so by a thousand.
+        if (below > thousand / slack && below < thousand * slack) {
+            tell(0, k, 1 / below);
+        }
+    }
+    return found;
+}
+
+std::vector<std::pair<Problem, std::size_t>> odd_loads(const std::vector<ConditionedLoads>& cases) {
+    auto all = same_loads(cases);
+    for (auto& one : other_sizes(cases)) {
+        all.push_back(std::move(one));
+    }
+    return all;
 }
 
 }  // namespace underbody::postproc

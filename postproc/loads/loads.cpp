@@ -348,6 +348,9 @@ private:
             settle_what_was_left_out();
         }
         look_into_mirror_plane();
+        if (auto fault = base_fault(result_, options_.base); fault && !revolved_) {
+            result_.problems.push_back(std::move(*fault));
+        }
         if (!(result_.closure > 1e-9)) {
             return;
         }

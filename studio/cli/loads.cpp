@@ -510,7 +510,7 @@ void show_copies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
             }
         }
     }
-    for (const auto& [problem, last] : postproc::same_loads(all)) {
+    for (const auto& [problem, last] : postproc::odd_loads(all)) {
         shell.show_warning(problem.message);
     }
 }

@@ -89,6 +89,55 @@ TEST(DeclaredLengths, AreHeldAgainstTheBodyByTheLoads) {
     EXPECT_THAT(messages(loads(box(false, false), options)), testing::Not(HasSubstr("of reference is")));
 }
 
+TEST(DeclaredUp, IsHeldAgainstTheSideThatTheBaseFaces) {
+    LoadsResult loads = body_at(0.005);
+    const auto faces = [&](Vector area) {
+        loads.zones = {{}, {}};
+        loads.zones[0].name = "base";
+        loads.zones[0].area_vector = area;
+        loads.zones[1].name = "hull";
+        loads.area = 0.06;
+        const auto fault = base_fault(loads, "*base*");
+        return fault ? fault->message : "";
+    };
+    EXPECT_EQ(faces({0, 0, -0.01}), "");
+    EXPECT_EQ(faces({0.005, 0, -0.0087}), "") << "a body pitched by 30 degrees";
+    EXPECT_THAT(faces({0, 0, 0.01}), AllOf(HasSubstr("(zone 'base') faces up"), HasSubstr("another direction")));
+    EXPECT_THAT(faces({0, -0.01, 0}), HasSubstr("faces sideways"));
+    EXPECT_EQ(faces({0, 0, 0}), "") << "the pattern took a closed body";
+    loads.closure = 1;  // the base alone: its outside is not known
+    EXPECT_EQ(faces({0, 0, 0.01}), "");
+    EXPECT_THAT(faces({0, -0.01, 0}), HasSubstr("faces sideways"));
+    loads.dimension = 2;
+    EXPECT_EQ(faces({0, -0.01, 0}), "");
+}
+
+TEST(OtherSizes, OneFileOfABatchInAnotherUnitIsTold) {
+    // Lift over gaps that passes through nought, at two speeds.
+    std::vector<ConditionedLoads> cases;
+    for (const double speed : {0.1, 1.0}) {
+        for (const double lift : {0.66, 0.4, 0.2, 0.01, -0.2}) {
+            cases.push_back({"h" + std::to_string(cases.size()),
+                             {{"gap", "0.001"}, {"speed", std::to_string(speed)}},
+                             {lift * speed * speed, 0, 0}});
+        }
+    }
+    EXPECT_TRUE(other_sizes(cases).empty());
+    cases[1].loads[0] *= 1000;
+    const auto found = other_sizes(cases);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].second, 1U);
+    EXPECT_THAT(found[0].first.message, AllOf(HasSubstr("'h1' has forces 606 times"), HasSubstr("another unit")));
+    EXPECT_EQ(odd_loads(cases).size(), 1U);
+    cases[3].loads[0] = 0.004;  // no force near nought
+    cases[8].loads[0] = 0.4;
+    cases[1].loads[0] = 0.000002;  // 0.2 N at 1 m/s, read as of thousandths
+    ASSERT_EQ(other_sizes(cases).size(), 1U);
+    EXPECT_EQ(other_sizes(cases)[0].second, 1U);
+    cases.resize(3);  // of three, two may as well be wrong
+    EXPECT_TRUE(other_sizes(cases).empty());
+}
+
 TEST(SameLoads, OfCasesWithOtherConditionsAreToldAsCopies) {
     const std::vector<double> lift = {0.25, 0.6, 0, 0.08}, other = {0.2, 0.6, 0, 0.08}, nothing = {0, 0, 0, 0};
     const auto found = same_loads({{"h5", {{"gap", "0.005"}, {"time", "1"}}, lift},
