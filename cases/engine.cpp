@@ -1,6 +1,6 @@
 #include "cases/engine.h"
 
-#include <algorithm>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "cases/code_version.h"
@@ -94,38 +94,38 @@ std::string Key::about(const IdOf& id_of) const {
 
 namespace {
 
-fs::path store_file(const Study& study, const RunOptions& options) {
-    return options.store.empty() ? study.folder() / ".underbody" / "store.sqlite" : options.store;
-}
-
-std::shared_ptr<Store> open_store(const Study& study, const RunOptions& options, Engine::Mode mode) {
-    const fs::path file = store_file(study, options);
-    std::error_code error;
-    if (mode == Engine::Mode::look && !fs::exists(file, error)) {
-        return nullptr;
-    }
-    return std::make_shared<Store>(file, mode == Engine::Mode::look ? Store::Access::read : Store::Access::write);
-}
-
 std::string place_in_index(const std::string& kind, const std::string& name) { return kind + '\n' + name; }
 
 }  // namespace
 
+OpenedStore opened_store(const fs::path& folder, const RunOptions& options, bool look) {
+    const fs::path file = options.store.empty() ? folder / ".underbody" / "store.sqlite" : options.store;
+    OpenedStore opened;
+    std::error_code error;
+    if (!look || fs::exists(file, error)) {
+        opened.store = std::make_shared<Store>(file, look ? Store::Access::read : Store::Access::write);
+        opened.index = std::make_unique<StoredIndex>(*opened.store);
+        opened.hashes = opened.store->file_hashes();
+    }
+    return opened;
+}
+
 Engine::Engine(const Study& the_study, const RunOptions& the_options, Mode the_mode, core::Progress& the_progress)
+    : Engine(the_study, the_options, the_mode, the_progress,
+             opened_store(the_study.folder(), the_options, the_mode == Mode::look)) {}
+
+Engine::Engine(const Study& the_study, const RunOptions& the_options, Mode the_mode, core::Progress& the_progress,
+               OpenedStore opened)
     : study(the_study),
       options(the_options),
       mode(the_mode),
       progress(the_progress),
-      store_(open_store(the_study, the_options, the_mode)),
-      states_(the_study.folder(), store_ ? store_->file_hashes() : Store::FileHashes(), the_mode == Mode::look) {
-    if (!store_) {
-        return;
+      store_(std::move(opened.store)),
+      states_(the_study.folder(), std::move(opened.hashes), the_mode == Mode::look),
+      index_(std::move(opened.index)) {
+    if (store_) {
+        tell_version();
     }
-    for (auto& result : store_->results()) {
-        auto& same = index_[place_in_index(result.kind, result.name)];
-        same.insert(same.begin(), std::move(result));
-    }
-    tell_version();
 }
 
 void Engine::tell_version() {
@@ -137,21 +137,22 @@ void Engine::tell_version() {
     }
 }
 
-bool Engine::is_true(const StoredResult& result) {
-    return std::all_of(result.inputs.begin(), result.inputs.end(),
-                       [this](const StoredInput& input) { return states_.still(input); });
+bool Engine::is_true(std::string_view packed_inputs) {
+    return StoredInputs::all_of(packed_inputs,
+                                [this](const StoredInputs::View& input) { return states_.still(input); });
 }
 
-const StoredResult* Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
-    const auto found = index_.find(place_in_index(kind, name));
-    if (found != index_.end()) {
-        for (const auto& result : found->second) {
-            if (result.key == digest && is_true(result)) {
-                return &result;
-            }
+std::optional<StoredResult> Engine::known(const std::string& kind, const std::string& name, const std::string& digest) {
+    for (const auto* row = newest(kind, name); row != nullptr; row = row->older) {
+        if (row->key == digest && is_true(row->inputs)) {
+            return row->result();
         }
     }
-    return nullptr;
+    return std::nullopt;
+}
+
+const StoredIndex::Row* Engine::newest(const std::string& kind, const std::string& name) const {
+    return index_ ? index_->newest(kind, name) : nullptr;
 }
 
 StoredResult Engine::make_now(const std::string& kind, const std::string& name, const std::string& digest,
@@ -186,14 +187,13 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
                                  const std::function<Value()>& work, const std::string& shown, StepResult* told) {
     progress.check();
     const std::string digest = key.digest();
-    const StoredResult* result = known(kind, name, digest);
-    std::optional<StoredResult> fresh;  // of this run, or of another one that goes on beside it
+    std::optional<StoredResult> result = known(kind, name, digest);
     StepResult step{kind, shown.empty() ? name : shown, StepState::unchanged, {}};
     if (!result && mode == Mode::look) {
-        const auto earlier = index_.find(place_in_index(kind, name));
-        step.state = earlier != index_.end() ? StepState::changed : StepState::missing;
-        if (options.as_stored && earlier != index_.end()) {
-            result = &earlier->second.front();
+        const StoredIndex::Row* earlier = newest(kind, name);
+        step.state = earlier != nullptr ? StepState::changed : StepState::missing;
+        if (options.as_stored && earlier != nullptr) {
+            result = earlier->result();
         }
     } else if (!result) {
         try {
@@ -202,15 +202,14 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
                 lock = lock_of_result(store_->file(), kind, name, progress);
             }
             for (auto& candidate : store_->results(kind, name, digest)) {  // another run may have made it meanwhile
-                if (!fresh && is_true(candidate)) {
-                    fresh = std::move(candidate);
+                if (!result && is_true(candidate.inputs.packed())) {
+                    result = std::move(candidate);
                 }
             }
-            if (!fresh) {
+            if (!result) {
                 step.state = StepState::computed;
-                fresh = make_now(kind, name, digest, key, work);
+                result = make_now(kind, name, digest, key, work);
             }
-            result = &*fresh;
         } catch (const core::Cancelled&) {
             throw;
         } catch (const core::SystemError& error) {
@@ -227,15 +226,17 @@ std::optional<Made> Engine::make(const std::string& kind, const std::string& nam
         *told = step;
     }
     record(std::move(step));
-    if (result == nullptr) {
+    if (!result) {
         return std::nullopt;
     }
-    Made made{kind, name, result->id, result->identity(), result->summary};
+    Made made{kind, name, result->id, result->identity(), watcher_ ? result->summary : std::move(result->summary)};
     const std::string& called = shown.empty() ? name : shown;
-    const std::lock_guard lock(mutex_);
-    ids_[place_in_index(kind, called)] = made.id_for_files();
-    if (watcher_) {
-        watcher_(called, *result);
+    if (mode == Mode::compute || watcher_) {  // who only looks makes nothing that would name what it is made of
+        const std::lock_guard lock(mutex_);
+        ids_[place_in_index(kind, called)] = made.id_for_files();
+        if (watcher_) {
+            watcher_(called, *result);
+        }
     }
     return made;
 }
@@ -419,11 +420,13 @@ StudyResults stored_loads(const Study& study, const RunOptions& options) {
     return std::move(engine.results);
 }
 
-StudyResults stored_case_loads(const Study& study, const RunOptions& options) {
-    Engine engine(study, options, Engine::Mode::look, core::Progress::none());
-    find_loads(engine);
+std::pair<Study, StudyResults> listed(const fs::path& path, const RunOptions& options) {
+    auto store = std::async(std::launch::async, [&] { return opened_store(folder_of(path), options, true); });
+    Study study = Study::open(path);
+    Engine engine(study, options, Engine::Mode::look, core::Progress::none(), store.get());
+    find_loads(engine, true);
     engine.results.store = engine.store();
-    return std::move(engine.results);
+    return {std::move(study), std::move(engine.results)};
 }
 
 }  // namespace underbody::cases

@@ -13,6 +13,7 @@
 
 #include "cases/file_states.h"
 #include "cases/store.h"
+#include "cases/stored_index.h"
 #include "cases/study.h"
 #include "core/file.h"
 #include "core/inputs.h"
@@ -69,6 +70,15 @@ struct Value {
     Value(std::string all, std::string brief) : bytes(std::move(all)), summary(std::move(brief)) {}
 };
 
+/// What an engine takes out of a store at its beginning.
+struct OpenedStore {
+    std::shared_ptr<Store> store;  ///< nullptr: there is none
+    std::unique_ptr<StoredIndex> index;
+    Store::FileHashes hashes;
+};
+/// That of the study in the folder, or where the options say. `look`: nothing is made.
+OpenedStore opened_store(const std::filesystem::path& folder, const RunOptions& options, bool look);
+
 class Engine {
 public:
     enum class Mode {
@@ -76,6 +86,7 @@ public:
         look,     ///< it is left out, and told to be
     };
     Engine(const Study& study, const RunOptions& options, Mode mode, core::Progress& progress);
+    Engine(const Study& study, const RunOptions& options, Mode mode, core::Progress& progress, OpenedStore opened);
 
     const Study& study;
     const RunOptions& options;
@@ -129,9 +140,11 @@ public:
     void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
 private:
-    bool is_true(const StoredResult& result);
-    /// A result of the index that is true now; nullptr: none.
-    const StoredResult* known(const std::string& kind, const std::string& name, const std::string& digest);
+    bool is_true(std::string_view packed_inputs);
+    /// A result of the index that is true now.
+    std::optional<StoredResult> known(const std::string& kind, const std::string& name, const std::string& digest);
+    /// What the store has last, whether true or not; nullptr: nothing.
+    [[nodiscard]] const StoredIndex::Row* newest(const std::string& kind, const std::string& name) const;
     StoredResult make_now(const std::string& kind, const std::string& name, const std::string& digest, const Key& key,
                           const std::function<Value()>& work);
     [[nodiscard]] std::string id_of(const std::string& kind, const std::string& name);
@@ -141,10 +154,10 @@ private:
 
     std::shared_ptr<Store> store_;
     FileStates states_;
+    std::unique_ptr<StoredIndex> index_;
     Watcher watcher_;
     std::mutex mutex_;
-    std::unordered_map<std::string, std::vector<StoredResult>> index_;  ///< by kind and name, newest first
-    std::unordered_map<std::string, std::string> ids_;                  ///< of this run's results, likewise
+    std::unordered_map<std::string, std::string> ids_;  ///< of this run's results, by kind and name
 };
 
 /// A thing that several results are made of, made when the first of them needs it: what it read, they all read.
@@ -195,8 +208,9 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
 void look_at_all(Engine& engine);
 
 // The steps, in order. Each fills `engine.results`.
-void run_bodies(Engine& engine);         // step_bodies.cpp
-void find_loads(Engine& engine);         // step_loads.cpp: of each case
+void run_bodies(Engine& engine);  // step_bodies.cpp
+/// step_loads.cpp: of each case; `list`: of its values, lift, drag, side force and their errors alone.
+void find_loads(Engine& engine, bool list);
 void run_loads(Engine& engine);          // step_loads.cpp: and the table of them
 void run_pictures(Engine& engine);       // step_pictures.cpp
 void run_meshes(Engine& engine);         // step_meshes.cpp

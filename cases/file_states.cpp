@@ -81,7 +81,7 @@ std::string FileStates::presence_of(const std::string& path) {
     return kind == core::FileStamp::Kind::absent ? "absent" : kind == core::FileStamp::Kind::folder ? "folder" : "file";
 }
 
-std::string FileStates::names_state_of(const std::string& folder, const std::string& pattern) {
+std::string FileStates::names_state_of(const std::string& folder, std::string_view pattern) {
     Shelf& shelf = shelves_[std::hash<std::string>()(folder) % shelves_.size()];
     const std::lock_guard lock(shelf.mutex);
     const auto [place, unread] = shelf.listings.try_emplace(folder);
@@ -94,20 +94,23 @@ std::string FileStates::names_state_of(const std::string& folder, const std::str
             listing = {kept ? stamp : core::FileStamp{}, core::names_in_folder(folder, "*"), {}};
         }
     }
-    const auto [state, fresh] = listing.states.try_emplace(pattern);
-    if (fresh) {
-        core::Hasher hasher;
-        for (const auto& name : core::names_that_fit(listing.names, pattern)) {
-            hasher.add(name);
-        }
-        state->second = hasher.digest();
+    if (const auto known = listing.states.find(pattern); known != listing.states.end()) {
+        return known->second;
     }
-    return state->second;
+    core::Hasher hasher;
+    for (const auto& name : core::names_that_fit(listing.names, std::string(pattern))) {
+        hasher.add(name);
+    }
+    return listing.states.emplace(pattern, hasher.digest()).first->second;
 }
 
-bool FileStates::still(const StoredInput& input) {
-    const bool whole = input.path.starts_with('/') || folder_.empty();
-    const std::string path = whole ? input.path : folder_.native() + "/" + input.path;
+bool FileStates::still(const StoredInputs::View& input) {
+    std::string path;
+    if (!input.path.starts_with('/') && !folder_.empty()) {
+        path.reserve(folder_.native().size() + 1 + input.path.size());
+        (path += folder_.native()) += '/';
+    }
+    path += input.path;
     switch (input.kind) {
         case core::Input::Kind::content:
             return content_of(path, input.path) == input.state;
@@ -119,7 +122,7 @@ bool FileStates::still(const StoredInput& input) {
     return names_state_of(path, input.pattern) == input.state;
 }
 
-std::string FileStates::content_of(const std::string& path, const std::string& stored) {
+std::string FileStates::content_of(const std::string& path, std::string_view stored) {
     const std::int64_t now = core::now_in_nanoseconds();
     const core::FileStamp stamp = core::stamp_of(path.c_str());
     if (stamp.kind == core::FileStamp::Kind::absent) {
@@ -150,7 +153,7 @@ std::string FileStates::content_of(const std::string& path, const std::string& s
     }
     const std::lock_guard lock(mutex_);
     if (now - std::max(stamp.modified, stamp.changed) > settled && core::stamp_of(path.c_str()) == stamp) {
-        learned_[stored] = {stamp, hash};
+        learned_.insert_or_assign(std::string(stored), std::pair(stamp, hash));
     }
     return hash;
 }

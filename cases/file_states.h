@@ -23,7 +23,7 @@ public:
     /// Hash of the content (content), of the names (names), else "absent", "file", "folder".
     std::string state_of(const core::Input& input);
     /// True if the input is now as it was.
-    bool still(const StoredInput& input);
+    bool still(const StoredInputs::View& input);
 
     /// How the store names a path: relative to the study, unless it was named absolutely and lies outside.
     [[nodiscard]] std::string stored_path(const std::filesystem::path& path) const;
@@ -38,12 +38,12 @@ private:
     struct Listing {
         core::FileStamp stamp;
         std::vector<std::string> names;
-        std::unordered_map<std::string, std::string> states;  ///< by pattern
+        std::unordered_map<std::string, std::string, Store::HashOfText, std::equal_to<>> states;  ///< by pattern
     };
 
     // Paths as text: to take one apart costs more than to ask for its stamp.
-    std::string content_of(const std::string& path, const std::string& stored);
-    std::string names_state_of(const std::string& folder, const std::string& pattern);
+    std::string content_of(const std::string& path, std::string_view stored);
+    std::string names_state_of(const std::string& folder, std::string_view pattern);
     static std::string presence_of(const std::string& path);
 
     /// Folders by a hash of their path, so that threads seldom wait for one another.

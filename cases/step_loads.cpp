@@ -109,14 +109,21 @@ std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postp
     return text;
 }
 
-void take_brief(std::string_view text, CaseLoads& loads) {
+/// What a list of cases shows and judges them by.
+bool is_listed(std::string_view value) {
+    return value == "lift_force" || value == "drag_force" || value == "side_force" || value == "lift_pressure" ||
+           value.ends_with("_sigma");
+}
+
+/// `list`: only the values that one shows; ten thousand cases have a hundred thousand others.
+void take_brief(std::string_view text, CaseLoads& loads, bool list) {
     const auto word = [&](char end) {
         const std::size_t at = std::min(text.find(end), text.size());
         const std::string_view result = text.substr(0, at);
         text.remove_prefix(std::min(at + 1, text.size()));
         return result;
     };
-    loads.values.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
+    loads.values.reserve(list ? 4 : static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
     while (!text.empty()) {
         const std::string_view name = word('\t');
         const std::string_view unit = word('\t');
@@ -127,7 +134,7 @@ void take_brief(std::string_view text, CaseLoads& loads) {
         } else if (name == "?") {
             loads.settled = std::string(unit);
             loads.settled_why = std::string(rest);
-        } else {
+        } else if (!list || is_listed(name)) {
             loads.values.push_back(
                 {std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
         }
@@ -298,7 +305,7 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
     return table;
 }
 
-void find_loads(Engine& engine) {
+void find_loads(Engine& engine, bool list) {
     const auto& cases = engine.study.cases;
     const std::size_t first = engine.results.steps.size();
     auto& all = engine.results.case_loads;
@@ -319,7 +326,7 @@ void find_loads(Engine& engine) {
             if (made) {
                 one.id = made->id;
                 one.origin = made->identity;
-                take_brief(made->summary, one);
+                take_brief(made->summary, one, list);
             }
         },
         engine.progress);
@@ -331,7 +338,7 @@ void find_loads(Engine& engine) {
 }
 
 void run_loads(Engine& engine) {
-    find_loads(engine);
+    find_loads(engine, false);
     const auto& cases = engine.study.cases;
     auto& all = engine.results.case_loads;
     const bool in_time = std::any_of(cases.begin(), cases.end(), [](const Case& entry) { return entry.mean; });

@@ -56,30 +56,47 @@ void check_content(const fs::path& file) {
     }
 }
 
-std::string text_of(const SQLite::Column& column) {
-    return std::string(static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes()));
+/// As long as the row is looked at.
+std::string_view view_of(const SQLite::Column& column) {
+    return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
+}
+
+std::string text_of(const SQLite::Column& column) { return std::string(view_of(column)); }
+
+constexpr const char* columns = "id, kind, name, key, inputs, summary";
+
+Store::Texts texts_of(SQLite::Statement& row) {
+    return {row.getColumn(0).getInt64(), view_of(row.getColumn(1)), view_of(row.getColumn(2)),
+            view_of(row.getColumn(3)),   view_of(row.getColumn(4)), view_of(row.getColumn(5))};
+}
+
+}  // namespace
+
+StoredInputs::StoredInputs(std::initializer_list<StoredInput> inputs) {
+    for (const auto& input : inputs) {
+        push_back(input);
+    }
+}
+
+StoredInputs StoredInputs::of_packed(std::string packed) {
+    StoredInputs inputs;
+    inputs.packed_ = std::move(packed);
+    return inputs;
 }
 
 /// One line an input: kind, state, path, and the pattern of names. Paths with line ends are quoted by their lengths.
-std::string packed(const std::vector<StoredInput>& inputs) {
-    std::string text;
-    std::size_t size = 0;
-    for (const auto& input : inputs) {
-        size += input.state.size() + input.path.size() + input.pattern.size() + 16;
-    }
-    text.reserve(size);
-    for (const auto& input : inputs) {
-        text += "cpn"[static_cast<int>(input.kind)];
-        ((text += input.state) += ' ') += std::to_string(input.path.size());
-        (text += ' ') += input.path;
-        text += std::to_string(input.pattern.size());
-        ((text += ' ') += input.pattern) += '\n';
-    }
-    return text;
+void StoredInputs::push_back(const StoredInput& input) {
+    packed_ += "cpn"[static_cast<int>(input.kind)];
+    ((packed_ += input.state) += ' ') += std::to_string(input.path.size());
+    (packed_ += ' ') += input.path;
+    packed_ += std::to_string(input.pattern.size());
+    ((packed_ += ' ') += input.pattern) += '\n';
 }
 
-std::vector<StoredInput> unpacked(std::string_view text) {
-    std::vector<StoredInput> inputs;
+bool StoredInputs::next(std::string_view& text, View& input) {
+    if (text.empty()) {
+        return false;
+    }
     const auto word = [&](char end) {
         const std::size_t at = std::min(text.find(end), text.size());
         const std::string_view result = text.substr(0, at);
@@ -93,34 +110,39 @@ std::vector<StoredInput> unpacked(std::string_view text) {
         }
         const std::string_view result = text.substr(0, size);
         text.remove_prefix(result.size());
-        return std::string(result);
+        return result;
     };
-    while (!text.empty()) {
-        StoredInput input;
-        const char kind = text.front();
-        text.remove_prefix(1);
-        input.kind = kind == 'c'   ? core::Input::Kind::content
-                     : kind == 'p' ? core::Input::Kind::presence
-                                   : core::Input::Kind::names;
-        input.state = word(' ');
-        input.path = counted();
-        input.pattern = counted();
-        word('\n');
-        inputs.push_back(std::move(input));
+    const char kind = text.front();
+    text.remove_prefix(1);
+    input.kind = kind == 'c'   ? core::Input::Kind::content
+                 : kind == 'p' ? core::Input::Kind::presence
+                               : core::Input::Kind::names;
+    input.state = word(' ');
+    input.path = counted();
+    input.pattern = counted();
+    word('\n');
+    return true;
+}
+
+std::vector<StoredInput> StoredInputs::all() const {
+    std::vector<StoredInput> inputs;
+    std::string_view rest = packed_;
+    for (View input; next(rest, input);) {
+        inputs.push_back({input.kind, std::string(input.path), std::string(input.pattern), std::string(input.state)});
     }
     return inputs;
 }
 
-constexpr const char* columns = "id, kind, name, key, inputs, summary";
-
-StoredResult result_of(SQLite::Statement& row) {
-    return {row.getColumn(0).getInt64(), text_of(row.getColumn(1)),           text_of(row.getColumn(2)),
-            text_of(row.getColumn(3)),   unpacked(text_of(row.getColumn(4))), text_of(row.getColumn(5))};
+StoredResult Store::Texts::result() const {
+    return {id,
+            std::string(kind),
+            std::string(name),
+            std::string(key),
+            StoredInputs::of_packed(std::string(inputs)),
+            std::string(summary)};
 }
 
-}  // namespace
-
-std::string StoredResult::identity() const { return core::content_hash(kind + '\n' + key + '\n' + packed(inputs)); }
+std::string StoredResult::identity() const { return core::content_hash(kind + '\n' + key + '\n' + inputs.packed()); }
 
 Store::Store(const fs::path& file, Access access) : file_(file) {
     check_content(file_);
@@ -252,20 +274,24 @@ void Store::make_tables() {
     }
 }
 
-std::vector<StoredResult> Store::results() {
+void Store::for_each_result(const std::function<void(const Texts&)>& take) {
     const std::lock_guard lock(mutex_);
-    std::vector<StoredResult> all;
     try {
         if (!database_->tableExists("result")) {
-            return all;
+            return;
         }
         SQLite::Statement query(*database_, std::string("SELECT ") + columns + " FROM result ORDER BY id");
         while (query.executeStep()) {
-            all.push_back(result_of(query));
+            take(texts_of(query));
         }
     } catch (const SQLite::Exception& problem) {
         failed(file_, problem);
     }
+}
+
+std::vector<StoredResult> Store::results() {
+    std::vector<StoredResult> all;
+    for_each_result([&](const Texts& row) { all.push_back(row.result()); });
     return all;
 }
 
@@ -280,7 +306,7 @@ std::vector<StoredResult> Store::results(const std::string& kind, const std::str
         query.bind(2, name);
         query.bind(3, key);
         while (query.executeStep()) {
-            found.push_back(result_of(query));
+            found.push_back(texts_of(query).result());
         }
     } catch (const SQLite::Exception& problem) {
         failed(file_, problem);
@@ -334,7 +360,7 @@ std::int64_t Store::put(const StoredResult& result, const std::string& about, co
         SQLite::Statement insert(
             *database_, "INSERT INTO result (kind, name, key, inputs, about, summary) VALUES (?, ?, ?, ?, ?, ?)");
         int at = 0;
-        for (const auto& text : {result.kind, result.name, result.key, packed(result.inputs), about, result.summary}) {
+        for (const auto& text : {result.kind, result.name, result.key, result.inputs.packed(), about, result.summary}) {
             insert.bind(++at, text);
         }
         insert.exec();

@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 
+#include "cases/case_names.h"
 #include "cases/design_points.h"
 #include "cases/study_format.h"
 #include "cases/sweep.h"
@@ -74,61 +74,6 @@ Conditions read_where(const TomlTable& table, const char* key) {
     } catch (const core::UsageError& error) {
         throw core::InputError(error.kind(), table.path_of(key) + ": " + error.message(), table.place(key),
                                error.hint());
-    }
-}
-
-std::string stem_of(const fs::path& file) {
-    std::string name = file.filename().string();
-    for (const char* ending : {".gz", ".h5"}) {
-        if (name.ends_with(ending)) {
-            name.resize(name.size() - std::string_view(ending).size());
-        }
-    }
-    return fs::path(name).stem().string();
-}
-
-/// The path below the study's folder, wherever that lies; else the whole path.
-fs::path below(const fs::path& file, const fs::path& folder) {
-    const std::string& whole = file.native();
-    const std::string& start = folder.native();
-    if (whole.size() > start.size() + 1 && whole.starts_with(start) && whole[start.size()] == '/' &&
-        start.find("..") == std::string::npos) {
-        return whole.substr(start.size() + 1);
-    }
-    const fs::path rest = file.lexically_relative(folder);
-    return rest.empty() || *rest.begin() == ".." ? file : rest;
-}
-
-/// What a case is called as long as no other is called so. OpenFOAM's "case.foam" and "system/controlDict" are called
-/// alike in every case: there it is the folder.
-std::string short_name(const fs::path& file, bool folder) {
-    const fs::path parent = file.filename() == "controlDict" ? file.parent_path().parent_path() : file.parent_path();
-    const std::string stem = folder ? file.filename().string() : stem_of(file);
-    const bool named_alike = !folder && (stem == "case" || file.filename() == "controlDict");
-    return named_alike && parent.has_filename() ? parent.filename().string() : stem;
-}
-
-/// Cases of one name get the folder before it that tells them apart.
-void tell_names_apart(std::vector<Case>& cases, const fs::path& folder) {
-    std::unordered_map<std::string, std::vector<Case*>> by_name;
-    for (auto& entry : cases) {
-        by_name[entry.name].push_back(&entry);
-    }
-    for (auto& [name, alike] : by_name) {
-        for (Case* entry : alike) {
-            fs::path before = below(entry->file, folder).parent_path();
-            before = before.filename() == name ? before.parent_path() : before;
-            if (alike.size() > 1 && before.has_filename()) {
-                entry->name = before.filename().string() + "/" + name;
-            }
-        }
-    }
-    std::unordered_set<std::string> taken;
-    for (auto& entry : cases) {
-        if (!taken.insert(entry.name).second) {
-            entry.name = below(entry.file, folder).string();  // no two have that
-            taken.insert(entry.name);
-        }
     }
 }
 
@@ -207,10 +152,12 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
     DesignPointCases design(table);
     auto found = find_cases(pattern, study.folder(), table);
     const auto units = units_of(pattern, table, own_units);
+    study.cases.reserve(study.cases.size() + found.size());
+    files.reserve(files.size() + found.size());
     for (auto& item : found) {
         Case entry;
-        entry.file = item.path;
-        entry.name = short_name(below(entry.file, study.folder()), item.folder);
+        entry.file = std::move(item.path);
+        entry.name = short_name(entry.file, study.folder(), item.folder);
         entry.conditions = held;
         entry.zones = zones;
         entry.length_unit = length_unit;
@@ -220,7 +167,7 @@ void add_cases(Study& study, const TomlTable& table, std::unordered_map<std::str
         }
         for (auto& text : item.match.texts) {
             std::erase_if(entry.conditions.texts, [&](const auto& old) { return old.first == text.first; });
-            entry.conditions.texts.push_back(text);
+            entry.conditions.texts.push_back(std::move(text));
         }
         if (!design.take(entry)) {
             continue;
@@ -562,6 +509,10 @@ VerifySpec read_verification(const TomlTable& table, std::set<std::string>& take
 }
 
 }  // namespace
+
+fs::path folder_of(const fs::path& path) {
+    return fs::is_directory(path) ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 Study Study::open(const fs::path& path) {
     const fs::path file = fs::is_directory(path) ? path / "study.toml" : path;

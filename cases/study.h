@@ -69,6 +69,9 @@ private:
     std::filesystem::path folder_;
 };
 
+/// The folder of the study at a path, which may be that of its study.toml.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+
 /// Draws a figure to PNG bytes; given by the program, so that this library needs no window system.
 using FigureRenderer = std::function<std::string(const core::Figure&)>;
 
@@ -163,8 +166,9 @@ StudyResults run_study(const Study& study, const RunOptions& options,
 StudyResults stored_results(const Study& study, const RunOptions& options);
 /// The same of the loads alone.
 StudyResults stored_loads(const Study& study, const RunOptions& options);
-/// `case_loads` of that, without the table: for lists of many cases.
-StudyResults stored_case_loads(const Study& study, const RunOptions& options);
+/// The study at a path and `case_loads` of that, without the table, and of their values the forces and their errors
+/// alone: for lists of many cases, whose store is read while their folders are.
+std::pair<Study, StudyResults> listed(const std::filesystem::path& path, const RunOptions& options);
 
 /// How a [[table]] is fitted, wherever it is.
 tables::FitOptions fit_options(const TableSpec& spec);

@@ -40,11 +40,11 @@ std::string StudyResults::loads_document(const CaseLoads& one) const {
 }
 
 core::Problems StudyResults::gathered_warnings(bool each) const {
-    core::BatchProblems all;
+    core::BatchProblems all(each);
     for (const auto& one : case_loads) {
         all.add(one.file, one.warnings);
     }
-    return all.gathered(each);
+    return all.gathered();
 }
 
 std::string to_string(StepState state) {

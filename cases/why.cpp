@@ -398,7 +398,7 @@ private:
         const auto now = true_.find(name);
         origin.state = now != true_.end() && now->second.id == result.id ? StepState::unchanged : StepState::changed;
         origin.id = result.identity().substr(0, 16);
-        origin.files = result.inputs;
+        origin.files = result.inputs.all();
         const Store::Made made = engine_.store()->made(result.id).value_or(Store::Made{"{}", ""});
         origin.made = made.when;
         const json about = json::parse(made.about);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 
 namespace underbody::core {
 
@@ -32,34 +31,33 @@ std::string without_numbers(const std::string& text) {
 }  // namespace
 
 void BatchProblems::add(const std::string& file, const Problems& problems) {
-    for (Problem problem : problems) {
-        const std::string words = std::to_string(static_cast<int>(problem.severity)) + without_numbers(problem.message);
-        auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& known) { return known.words == words; });
+    for (const auto& problem : problems) {
+        auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& known) {  // as a rule, to the letter
+            return known.last == problem.message && known.problems.front().severity == problem.severity;
+        });
         if (kind == kinds_.end()) {
-            kind = kinds_.insert(kinds_.end(), {words, {}});
+            const std::string words =
+                std::to_string(static_cast<int>(problem.severity)) + without_numbers(problem.message);
+            kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& known) { return known.words == words; });
+            kind = kind == kinds_.end() ? kinds_.insert(kinds_.end(), {words, {}, {}, {}}) : kind;
+            kind->last = problem.message;
         }
-        if (problem.place.file.empty()) {
-            problem.place.file = file;
+        const std::string& place = problem.place.file.empty() ? file : problem.place.file;
+        kind->files.insert(place);
+        if (each_ || kind->problems.empty()) {
+            kind->problems.push_back(problem);
+            kind->problems.back().place.file = place;
         }
-        kind->problems.push_back(std::move(problem));
     }
 }
 
-Problems BatchProblems::gathered(bool each) const {
+Problems BatchProblems::gathered() const {
     Problems all;
     for (const auto& kind : kinds_) {
-        if (each) {
-            all.insert(all.end(), kind.problems.begin(), kind.problems.end());
-            continue;
-        }
-        std::set<std::string> files;
-        for (const auto& problem : kind.problems) {
-            files.insert(problem.place.file);
-        }
-        all.push_back(kind.problems.front());
-        if (files.size() > 1) {
-            all.back().message += " (and alike in " + std::to_string(files.size() - 1) +
-                                  (files.size() == 2 ? " other file)" : " other files)");
+        all.insert(all.end(), kind.problems.begin(), kind.problems.end());
+        if (!each_ && kind.files.size() > 1) {
+            all.back().message += " (and alike in " + std::to_string(kind.files.size() - 1) +
+                                  (kind.files.size() == 2 ? " other file)" : " other files)");
         }
     }
     return all;

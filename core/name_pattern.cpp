@@ -1,10 +1,14 @@
 #include "core/name_pattern.h"
 
+#include <dirent.h>
+
 #include <algorithm>
 #include <compare>
+#include <memory>
 #include <set>
 #include <unordered_set>
 
+#include "core/inputs.h"
 #include "core/mistyped.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -127,7 +131,39 @@ bool NamePattern::is_pattern(const std::string& text) { return text.find_first_o
 
 namespace {
 
-std::optional<NamePattern::Match> match_all(const std::vector<Part>& parts, const std::string& text) {
+/// Calls `visit` with each path below `start` ("" or ending in '/'), relative to it, and whether it is a folder. Goes
+/// `depth` folders down, through no links, and past folders that may not be read. By hand: a path of the library is
+/// taken apart for every file.
+template <class Visit>
+void walk(const std::string& start, std::ptrdiff_t depth, const Visit& visit) {
+    std::vector<std::pair<std::string, std::ptrdiff_t>> folders = {{"", 0}};
+    while (!folders.empty()) {
+        const auto [folder, level] = std::move(folders.back());
+        folders.pop_back();
+        const std::unique_ptr<DIR, int (*)(DIR*)> open(::opendir((start + folder).c_str()), ::closedir);
+        while (const dirent* entry = open != nullptr ? ::readdir(open.get()) : nullptr) {
+            const std::string_view name = entry->d_name;
+            if (name == "." || name == "..") {
+                continue;
+            }
+            std::string below = folder;
+            below += name;
+            bool link = entry->d_type == DT_LNK;
+            bool is_folder = entry->d_type == DT_DIR;
+            if (link || entry->d_type == DT_UNKNOWN) {
+                std::error_code error;
+                link = link || fs::is_symlink(start + below, error);
+                is_folder = stamp_of((start + below).c_str()).kind == FileStamp::Kind::folder;
+            }
+            visit(below, is_folder);
+            if (is_folder && !link && level < depth) {
+                folders.emplace_back(std::move(below += '/'), level + 1);
+            }
+        }
+    }
+}
+
+std::optional<NamePattern::Match> match_all(const std::vector<Part>& parts, std::string_view text) {
     NamePattern::Match found;
     if (!match_from(parts, 0, text, found)) {
         return std::nullopt;
@@ -218,20 +254,20 @@ std::vector<NamePattern::Found> NamePattern::files_of(const std::vector<Part>& p
         std::count(pattern_.begin() + static_cast<std::ptrdiff_t>(slash == std::string::npos ? 0 : slash + 1),
                    pattern_.end(), '/');
     std::vector<Found> found;
-    for (auto entry = fs::recursive_directory_iterator(start, fs::directory_options::skip_permission_denied, error);
-         !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-        const bool folder = entry->is_directory(error);
-        if (folder && entry.depth() >= depth) {
-            entry.disable_recursion_pending();
-        }
+    std::string name = fixed.empty() && !absolute ? fixed : fixed + "/";
+    const std::size_t ahead = name.size();
+    const auto take = [&](const std::string& below, bool folder) {
         if (folder && !folders) {
-            continue;
+            return;
         }
-        const std::string below = entry->path().native().substr(before.size());
-        const std::string name = fixed.empty() ? (absolute ? "/" + below : below) : fixed + "/" + below;
+        name.resize(ahead);
+        name += below;
         if (auto match_found = match_all(parts, name)) {
             found.push_back({normal + below, std::move(*match_found), folder});
         }
+    };
+    if (!start.empty()) {
+        walk(before, depth, take);
     }
     std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
         if (const auto order = a.match.texts <=> b.match.texts; order != 0) {

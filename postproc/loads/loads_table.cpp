@@ -179,11 +179,11 @@ void add_origins(core::Table& table, const std::vector<LoadsCase>& cases) {
 
 /// What makes numbers less than they seem goes with them.
 void add_warnings(core::Table& table, const std::vector<LoadsCase>& cases) {
-    core::BatchProblems warnings;  // what makes numbers less than they seem goes with them
+    core::BatchProblems warnings(false);  // what makes numbers less than they seem goes with them
     for (const auto& one : cases) {
         warnings.add(one.file, one.loads.problems);
     }
-    for (const auto& problem : warnings.gathered(false)) {
+    for (const auto& problem : warnings.gathered()) {
         if (problem.severity != core::Problem::Severity::note) {
             table.comments.push_back("warning: " + problem.place.file + ": " + problem.message);
         }

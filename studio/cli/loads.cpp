@@ -525,7 +525,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
                                           std::vector<Failure>& failures) {
     const postproc::LoadsOptions options = loads_options(given);
     std::vector<postproc::LoadsCase> cases;
-    core::BatchProblems said;
+    core::BatchProblems said(shell.verbose);
     Seen seen;
     for (std::size_t i = 0; i < batch.files.size(); ++i) {
         shell.progress().check();
@@ -558,7 +558,7 @@ std::vector<postproc::LoadsCase> cases_of(Shell& shell, const LoadsArguments& gi
         }
     }
     if (batch.files.size() > 1) {
-        shell.show(said.gathered(shell.verbose));
+        shell.show(said.gathered());
     }
     if (!failures.empty() && (cases.empty() || !given.keep_going)) {
         throw core::InputError("file",

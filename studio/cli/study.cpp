@@ -166,8 +166,8 @@ nlohmann::json json_of_case(const cases::Case& entry, const cases::CaseLoads& lo
 }
 
 int list(Shell& shell, const StudyArguments& arguments) {
-    const auto study = cases::Study::open(arguments.folder);
-    const auto results = with_store_hint([&] { return cases::stored_case_loads(study, run_options(arguments)); });
+    const auto [study, results] =
+        with_store_hint([&] { return cases::listed(arguments.folder, run_options(arguments)); });
     for (const auto& note : results.notes) {
         shell.info(note);
     }

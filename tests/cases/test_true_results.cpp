@@ -290,7 +290,7 @@ TEST_F(TrueResults, AStudyThatIsMovedOrCopiedIsUnchangedByteByByte) {
         EXPECT_EQ(store.value(result.id).value_or("").find(fs::temp_directory_path().string() + "/underbody"),
                   std::string::npos)
             << result.kind << " " << result.name;
-        for (const auto& input : result.inputs) {
+        for (const auto& input : result.inputs.all()) {
             EXPECT_FALSE(fs::path(input.path).is_absolute()) << result.kind << " " << result.name << ": " << input.path;
         }
     }
