@@ -39,6 +39,8 @@ public:
     [[nodiscard]] std::vector<QStringList> rows() const;
     [[nodiscard]] core::Table table() const;
     [[nodiscard]] bool has_table() const { return !cases_.empty(); }
+    /// The tab in front is a plot, not rows of numbers.
+    [[nodiscard]] bool shows_curves() const { return currentIndex() > 1; }
     [[nodiscard]] QTableWidget* forces() const { return forces_; }
     [[nodiscard]] QTableWidget* zones() const { return zones_; }
     [[nodiscard]] PlotView* along() const { return along_; }

@@ -54,7 +54,9 @@ void DesignPanel::build() {
         scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
         upper->addWidget(scene_->widget());
     } else {
-        upper->addWidget(new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer."));
+        auto* why = new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer.");
+        why->setWordWrap(true);
+        upper->addWidget(why);
     }
     section_ = new PlotView(this);
     upper->addWidget(section_);

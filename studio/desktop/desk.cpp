@@ -81,16 +81,52 @@ void Desk::take_session(const SessionPointer& fresh) {
     if (earlier_.size() > 3) {
         earlier_.erase(earlier_.begin());
     }
-    session_ = session;
-    for (const auto& problem : session->problems) {
-        Q_EMIT found(problem);
+    session_ = with_failures(session);
+    tell_problems();
+    Q_EMIT session_changed();
+}
+
+SessionPointer Desk::with_failures(const SessionPointer& session) const {
+    if (failed_.empty() || session->folder != failed_in_) {
+        return session;
     }
-    for (const auto& step : session->results.steps) {
-        if (!step.error.empty()) {
-            Q_EMIT found({core::Problem::Severity::error, step.kind + " '" + step.name + "': " + step.error, {}});
+    auto newer = std::make_shared<Session>(*session);
+    for (const auto& step : failed_) {
+        for (auto& loads : newer->results.case_loads) {
+            if (step.kind == "loads" && loads.name == step.name && loads.values.empty()) {
+                loads.state = cases::StepState::failed;
+                loads.error = step.error;
+            }
         }
     }
-    Q_EMIT session_changed();
+    return newer;
+}
+
+/// What is wrong with what is shown, and what its numbers mean less for; what is alike in many cases once.
+void Desk::tell_problems() {
+    using Severity = core::Problem::Severity;
+    const auto tell_steps = [&](const std::vector<cases::StepResult>& steps) {
+        for (const auto& step : steps) {
+            if (!step.error.empty()) {
+                Q_EMIT found({Severity::error, step.kind + " '" + step.name + "': " + step.error, {}});
+            }
+        }
+    };
+    for (const auto& problem : session_->problems) {
+        Q_EMIT found(problem);
+    }
+    for (const auto& note : session_->study.notes) {
+        if (note.severity != Severity::note) {
+            Q_EMIT found(note);
+        }
+    }
+    for (const auto& problem : session_->results.gathered_warnings(false)) {
+        Q_EMIT found({Severity::warning, problem.message, {problem.place.file, {}, {}, {}}});
+    }
+    tell_steps(session_->results.steps);
+    if (session_->folder == failed_in_) {
+        tell_steps(failed_);
+    }
 }
 
 namespace {
@@ -200,6 +236,9 @@ void Desk::open(const fs::path& folder, bool run, const std::vector<Words>& then
             take_session(session);
             if (!run || state().study != session->folder.string()) {  // what the open one shows is kept
                 act({"open", session->folder.string()});
+                if (session->shapes.empty() && !session->study.cases.empty() && state().workspace == "design") {
+                    act({"workspace", "compare"});  // there is no shape to design
+                }
             }
             for (const auto& words : then) {
                 act(words);
@@ -223,10 +262,14 @@ void Desk::reload() {
         return;
     }
     if (computing()) {
-        reload_later_ = true;
         Q_EMIT noted("The study is being computed: it is read again when that is done.");
         return;
     }
+    failed_.clear();
+    read_again();
+}
+
+void Desk::read_again() {
     jobs_.start("open", "reading " + qt(session_->folder.string()),
                 [this, folder = session_->folder, files = state().files](core::Progress&) {
                     auto session = open_session(folder, files);
@@ -244,23 +287,28 @@ void Desk::run_study() {
     }
     const fs::path folder = session_->folder;
     refresh_->start();
+    failed_.clear();
     jobs_.start(
         "run", "computing",
         [this, folder](core::Progress& progress) {
             cases::RunOptions options;
             options.renderer = [](const core::Figure& figure) { return render_png(figure); };
-            const auto results = cases::run_study(cases::Study::open(folder), options, progress);
+            auto results = cases::run_study(cases::Study::open(folder), options, progress);
             const QString text = QString("Computed %1 steps, reused %2, failed %3")
                                      .arg(results.computed)
                                      .arg(results.reused)
                                      .arg(results.failed);
-            return [this, text] { Q_EMIT noted(text); };
+            std::erase_if(results.steps, [](const cases::StepResult& step) { return step.error.empty(); });
+            return [this, text, folder, failed = std::move(results.steps)] {
+                failed_in_ = folder;
+                failed_ = failed;
+                Q_EMIT noted(text);
+            };
         },
         false,
         [this] {
             refresh_->stop();
-            reload_later_ = false;
-            reload();  // also what a cancelled or failed run has stored
+            read_again();  // also what a cancelled or failed run has stored
         });
 }
 

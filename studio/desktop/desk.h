@@ -40,7 +40,7 @@ public:
     void open_study(const std::filesystem::path& folder);
     /// The same, then carries out these actions and computes it.
     void open_and_run(const std::filesystem::path& folder, const std::vector<Words>& then = {});
-    /// Reads the study and its store again. While it is computed: at the end of that.
+    /// Reads the study and its store again; what failed is forgotten. While it is computed: at the end of that.
     void reload();
     /// Computes what changed; what is stored is shown as it comes, also of a run that is cancelled or fails.
     void run_study();
@@ -65,6 +65,10 @@ Q_SIGNALS:
 private:
     void open(const std::filesystem::path& folder, bool run, const std::vector<Words>& then = {});
     void take_session(const SessionPointer& session);
+    void read_again();
+    /// With what the last run could not do, which no store keeps.
+    [[nodiscard]] SessionPointer with_failures(const SessionPointer& session) const;
+    void tell_problems();
     /// Gets the session that the state names.
     void follow_state();
     /// What was taken into the study, or is taken back, is written.
@@ -78,7 +82,8 @@ private:
     SessionPointer session_;
     std::vector<SessionPointer> earlier_;  ///< of studies that were open: undo goes back without reading
     QTimer* refresh_ = nullptr;
-    bool reload_later_ = false;
+    std::filesystem::path failed_in_;                ///< the study of `failed_`
+    std::vector<cases::StepResult> failed_;          ///< of its last run
     std::string written_in_;                         ///< the study of `written_`
     std::map<std::string, MeasuredRecord> written_;  ///< measurements as they stand on disk
 };

@@ -2,12 +2,16 @@
 
 #include <QBoxLayout>
 #include <QComboBox>
+#include <QEvent>
 #include <QImage>
 #include <QLabel>
 #include <QPushButton>
 #include <QRegularExpression>
+#include <QScrollBar>
 #include <QSignalBlocker>
+#include <QStyle>
 #include <QTextBrowser>
+#include <QTimer>
 #include <QUrl>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -90,7 +94,7 @@ QString effect_rows(const json& effects, const char* last_key, const QString& la
         return {};
     }
     QString text =
-        "<table cellpadding=5 cellspacing=0 border=1 style='border-collapse: collapse' width='100%'>"
+        "<table cellpadding=5 cellspacing=0 border=1 style='border-collapse: collapse' width='99%'>"
         "<tr><th align=left>effect</th><th align=left>parameters</th><th align=right>probability</th><th align=left>" +
         last_title + "</th></tr>";
     for (const auto& effect : effects) {
@@ -184,6 +188,7 @@ DiscoveryPanel::DiscoveryPanel(Desk& desk, QWidget* parent) : Panel(desk, parent
     row->addWidget(effects);
     connect(effects, &QPushButton::clicked, this, [this] { show_catalogue(); });
     page_ = new QTextBrowser;
+    page_->installEventFilter(this);
     column->addWidget(page_, 1);
     choice_->setAccessibleName("Measurement");
     connect(choice_, QOverload<int>::of(&QComboBox::activated), this, [this] {
@@ -227,7 +232,10 @@ void DiscoveryPanel::show_measurement() {
     } else if (residual == nullptr) {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
     }
-    const int width = std::max(400, page_->viewport()->width() - 40);
+    drawn_for_ = page_->width();
+    // As if it were rolled: the bar comes with the pictures.
+    const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent);
+    const int width = std::min(std::max(300, drawn_for_ - bar - 24), 900);
     for (const auto& [key, png] : session().results.pictures) {
         if (key.find(name) == std::string::npos ||
             (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
@@ -235,12 +243,27 @@ void DiscoveryPanel::show_measurement() {
         }
         const QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
         const QString url = "picture://" + QString::fromStdString(key).toHtmlEscaped();
-        page_->document()->addResource(QTextDocument::ImageResource, QUrl(url),
-                                       image.scaledToWidth(std::min(width, 900), Qt::SmoothTransformation));
-        page += QString("<p><img src='%1'></p>").arg(url);
+        page_->document()->addResource(
+            QTextDocument::ImageResource, QUrl(url),
+            image.scaledToWidth(qRound(width * devicePixelRatioF()), Qt::SmoothTransformation));
+        page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(width);
     }
     accept_->setText(accepted ? "&Take back" : "&Accept");
+    const int rolled = page_->verticalScrollBar()->value();
     page_->setHtml(page);
+    page_->verticalScrollBar()->setValue(rolled);
+}
+
+/// Its pictures are as wide as the page: another width, other pictures.
+bool DiscoveryPanel::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == page_ && event->type() == QEvent::Resize && page_->width() != drawn_for_) {
+        QTimer::singleShot(0, this, [this] {
+            if (isVisible() && page_->width() != drawn_for_) {
+                show_measurement();
+            }
+        });
+    }
+    return Panel::eventFilter(watched, event);
 }
 
 bool DiscoveryPanel::has_picture() const { return choice_->count() > 0; }

@@ -27,9 +27,11 @@ Q_SIGNALS:
 
 protected:
     void draw_again(bool session) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
     void show_measurement();
+    int drawn_for_ = 0;  ///< width of the page that its pictures are fitted to, px
     QComboBox* choice_ = nullptr;
     QPushButton* accept_ = nullptr;
     QPushButton* write_ = nullptr;

@@ -67,7 +67,9 @@ void ExplorePanel::build_head(QVBoxLayout& column) {
     second->addWidget(parameter_);
     second->addWidget(take_);
     column.addWidget(vary_row_);
-    const auto axes = [this] { desk_.act({"axes", x_->currentText().toStdString(), y_->currentText().toStdString()}); };
+    const auto axes = [this] {
+        desk_.act({"axes", x_->currentData().toString().toStdString(), y_->currentData().toString().toStdString()});
+    };
     connect(x_, QOverload<int>::of(&QComboBox::activated), this, axes);
     connect(y_, QOverload<int>::of(&QComboBox::activated), this, axes);
     connect(clear, &QPushButton::clicked, this, [this] { desk_.act({"brush"}); });

@@ -19,6 +19,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/body_figures.h"
+#include "studio/desktop/natural_order.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
@@ -65,6 +66,9 @@ QString in_unit(double value, const core::Column& column) {
     const std::string unit = unit_of(column);
     return qt(core::format_number(core::convert(value, column.unit, unit), 4)) + (unit == "1" ? "" : qt(unit));
 }
+
+/// A column's name as a title has it.
+QString axis_words(const std::string& name) { return qt(name).replace('_', ' '); }
 
 std::string written(const geometry::Vary& vary) {
     std::string values;
@@ -229,12 +233,14 @@ void ExplorePanel::draw_again(bool) {
     for (auto* box : {x_, y_}) {
         box->clear();
         for (const auto* column : columns) {
-            box->addItem(qt(column->name));
+            box->addItem(axis_words(column->name), qt(column->name));
         }
     }
-    x_->setCurrentText(qt(state().explore.x));
-    y_->setCurrentText(qt(state().explore.y));
-    if (y_->currentIndex() == x_->currentIndex() && y_->count() > 1) {  // what was chosen is not there
+    x_->setCurrentIndex(x_->findData(qt(state().explore.x)));
+    y_->setCurrentIndex(y_->findData(qt(state().explore.y)));
+    x_->setCurrentIndex(std::max(0, x_->currentIndex()));  // what was chosen is not there
+    y_->setCurrentIndex(std::max(0, y_->currentIndex()));
+    if (y_->currentIndex() == x_->currentIndex() && y_->count() > 1) {
         y_->setCurrentIndex(x_->currentIndex() == y_->count() - 1 ? 0 : y_->count() - 1);
     }
     std::vector<core::NamedRange> ranges;  // those of other columns are of the other rows
@@ -246,6 +252,13 @@ void ExplorePanel::draw_again(bool) {
         }
     }
     kept_ = core::rows_within(table, ranges);
+    std::vector<std::pair<QString, std::size_t>> named;
+    for (const std::size_t row : kept_) {
+        named.emplace_back(qt(name_of_row(row)), row);
+    }
+    std::stable_sort(named.begin(), named.end(),
+                     [](const auto& a, const auto& b) { return natural_less(a.first, b.first); });
+    std::transform(named.begin(), named.end(), kept_.begin(), [](const auto& one) { return one.second; });
     if (!brush_->isModified()) {
         brush_->setText(said.join(", "));
         brush_->setModified(false);
@@ -283,7 +296,7 @@ void ExplorePanel::fill_table() {
     const auto columns = columns_of(all);
     QStringList titles = {state().explore.shapes ? "shape" : "case"};
     for (const auto* column : columns) {
-        titles << qt(axis_title(column->name, unit_of(*column)));
+        titles << qt(axis_title(axis_words(column->name).toStdString(), unit_of(*column)));
     }
     const auto* refused = state().explore.shapes ? all.find("refused") : nullptr;
     table_->setColumnCount(titles.size());
@@ -314,8 +327,8 @@ void ExplorePanel::fill_table() {
 
 void ExplorePanel::draw_scatter() {
     const core::Table& table = rows();
-    const auto* x = table.find(x_->currentText().toStdString());
-    const auto* y = table.find(y_->currentText().toStdString());
+    const auto* x = table.find(x_->currentData().toString().toStdString());
+    const auto* y = table.find(y_->currentData().toString().toStdString());
     if (x == nullptr || y == nullptr || x->is_text() || y->is_text()) {
         scatter_->show_text(table.rows() == 0 ? QString() : "Choose two columns above");
         return;

@@ -55,6 +55,7 @@ void FieldsPanel::build_controls(QWidget& side) {
     range_->setClearButtonEnabled(true);
     left->addWidget(range_);
     range_shown_ = new QLabel;
+    range_shown_->setWordWrap(true);
     keep_range_ = new QToolButton;
     keep_range_->setText("Keep");
     keep_range_->setAccessibleName("Keep the range of the colours");

@@ -23,9 +23,21 @@
 #include "studio/desktop/compare_sheet.h"
 #include "studio/desktop/fitted_picture.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/rolled.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
+
+namespace {
+
+/// Of what is seen, and to where the colours run where that is farther.
+QString said_of_range(const std::array<double, 2>& range) {
+    const QString said = QString("%1 to %2").arg(range[0], 0, 'g', 4).arg(range[1], 0, 'g', 4);
+    const double most = std::max(-range[0], range[1]);
+    return is_around_zero(range) && -range[0] != range[1] ? said + QString(", colours ±%1").arg(most, 0, 'g', 4) : said;
+}
+
+}  // namespace
 
 FieldsPanel::FieldsPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("compare");
@@ -40,7 +52,7 @@ void FieldsPanel::build() {
     side->setFixedWidth(220);
     build_controls(*side);
     auto* rolled = new QScrollArea;  // a small window is not made larger by its controls
-    rolled->setWidget(side);
+    rolled->setWidget(new Held(side));
     rolled->setWidgetResizable(true);
     rolled->setFrameShape(QFrame::NoFrame);
     rolled->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -69,6 +81,14 @@ void FieldsPanel::build() {
     right->addWidget(halves, 1);
     build_probe(*right);
     connect(numbers_, &CompareNumbers::remark, this, &Panel::remark);
+    connect(numbers_, &QTabWidget::currentChanged, this, [this, halves] {
+        constexpr int for_curves = 250, for_rows = 130;  // px; rows roll, curves do not
+        const QList<int> now = halves->sizes();
+        if (numbers_->shows_curves() ? now[1] < for_curves : now[1] == for_curves) {
+            const int wanted = numbers_->shows_curves() ? for_curves : for_rows;
+            halves->setSizes({now[0] + now[1] - wanted, wanted});
+        }
+    });
 }
 
 void FieldsPanel::lay_out(const std::vector<Source>& sources) {
@@ -238,9 +258,7 @@ void FieldsPanel::recolour() {
     for (const auto& choice : chosen) {
         unit_ = choice.name.empty() ? unit_ : qt(pretty_unit(choice.unit));
     }
-    range_shown_->setText(range && array_->currentText() != "(plain)"
-                              ? QString("%1 to %2").arg((*range)[0], 0, 'g', 4).arg((*range)[1], 0, 'g', 4)
-                              : QString());
+    range_shown_->setText(range && array_->currentText() != "(plain)" ? said_of_range(*range) : QString());
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         if (cells_[i]->ready) {
             cells_[i]->scene->colour_by(chosen[i], range.value_or(std::array<double, 2>{0, 1}));

@@ -74,7 +74,14 @@ std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
     }
     if (sources.empty() && !session().study.cases.empty()) {
         // A picture from the start: the first case that the study itself wants pictures of, else the first of all.
+        // (a damaged one has none to show).
         const cases::Case* chosen = &session().study.cases.front();
+        for (const auto& loads : session().results.case_loads) {
+            if (!loads.values.empty()) {
+                chosen = &session().study.cases[loads.entry];
+                break;
+            }
+        }
         for (const auto& picture : session().study.pictures) {
             if (const auto found = session().study.select(picture.where); !found.empty()) {
                 chosen = found.front();

@@ -15,6 +15,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/case_points.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
@@ -159,6 +160,10 @@ void ForcePanel::choose_table(bool fresh) {
     const std::string name = state().current("table", names);
     const auto* spec = session().study.find_table(name);
     QString why;
+    if (spec == nullptr && !lift_of_cases(session().results.loads).points.empty()) {
+        show_cases();
+        return;
+    }
     if (spec == nullptr) {
         why = desk_.has_study() ? "This study has no force tables" : "Open a study with force tables";
     } else if (session().results.loads.rows() == 0) {
@@ -179,6 +184,19 @@ void ForcePanel::choose_table(bool fresh) {
     } else if (table_) {
         show_table();
     }
+}
+
+/// Without a table: the cases themselves, and what to write for one.
+void ForcePanel::show_cases() {
+    table_.reset();
+    spec_ = {};
+    list_->hide();
+    reach_->clear();
+    about_->setText(
+        "<b>No force table yet.</b> The points are the loads of the cases. In study.toml this makes a "
+        "table of them, with its error, equilibria and exports:<pre>" +
+        html(table_of_cases(session().results.loads)) + "</pre>");
+    plot_->show_figure(lift_of_cases(session().results.loads), true);
 }
 
 void ForcePanel::fit(const cases::TableSpec& spec) {

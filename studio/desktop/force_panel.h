@@ -54,6 +54,7 @@ private:
     void act(const std::string& assignment, const QString& gesture = {});
     void choose_table(bool fresh);
     void fit(const cases::TableSpec& spec);
+    void show_cases();
     void show_table();
     void fill_axes();
     void fill_held();

@@ -75,7 +75,7 @@ TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {
     connect(sheet, &TakeInSheet::failed, this, &MainWindow::show_failure);
     connect(sheet, &TakeInSheet::taken, this, [this](const QString& study, const QString& command, int cases) {
         problems_->note(QString("Took in %1 cases. The same: ").arg(cases) + command);
-        desk_->open_and_run(study.toStdString());
+        desk_->open_and_run(study.toStdString(), {{"workspace", "compare"}});
     });
     sheet->show();
     return sheet;

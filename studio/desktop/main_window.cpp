@@ -14,7 +14,6 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QScrollArea>
 #include <QSettings>
 #include <QStackedWidget>
 #include <QStandardPaths>
@@ -40,9 +39,11 @@
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/region_panel.h"
+#include "studio/desktop/rolled.h"
 #include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/desktop/theme.h"
+#include "studio/desktop/wheel_guard.h"
 
 namespace underbody::studio {
 
@@ -55,20 +56,6 @@ fs::path log_folder(bool remember) {
                ? fs::path(QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString()) / "logs"
                : fs::path();
 }
-
-/// Workspaces as large as there is room for; in a small window they are scrolled.
-class Rolled : public QScrollArea {
-public:
-    explicit Rolled(QWidget* all) {
-        setWidget(all);
-        setWidgetResizable(true);
-        setFrameShape(QFrame::NoFrame);
-        setFocusPolicy(Qt::NoFocus);
-    }
-    [[nodiscard]] QSize minimumSizeHint() const override {
-        return widget()->minimumSizeHint().boundedTo(QSize(520, 230));
-    }
-};
 
 /// Something that another step of the study makes.
 bool is_missing(const std::exception_ptr& error) {
@@ -96,6 +83,7 @@ MainWindow::MainWindow(bool remember)
         return box.clickedButton() == button;
     };
     watcher_ = new QFileSystemWatcher(this);
+    new WheelGuard(this);
     build_workspaces();
     build_tree();
     build_below();
@@ -267,6 +255,7 @@ void MainWindow::follow_state() {
     if (middle_->currentWidget() != wanted) {
         middle_->setCurrentWidget(wanted);
         statusBar()->clearMessage();
+        QTimer::singleShot(0, this, [this] { update(); });  // laid out anew, nothing of the old stays
     }
     const auto& history = desk_->history();
     const bool can_undo = history.position() > 0;

@@ -4,10 +4,12 @@
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
+#include <algorithm>
 #include <cmath>
 
 #include "core/text.h"
 #include "studio/desktop/qt_text.h"
+#include "surrogates/tables/analysis/figures.h"
 
 namespace underbody::studio {
 
@@ -40,6 +42,7 @@ void ParallelView::show_axes(std::vector<Axis> axes) {
             axis.lower = std::isfinite(axis.lower) ? axis.lower - 1 : 0;
             axis.upper = axis.lower + 2;
         }
+        axis.logarithmic = tables::spans_decades(axis.lower, axis.upper);
     }
     give_titles_room();
     pale_ = {};
@@ -60,12 +63,17 @@ double ParallelView::x_of(std::size_t axis) const {
 }
 
 double ParallelView::y_of(const Axis& axis, double value) const {
-    return height() - bottom - (height() - head_ - bottom) * (value - axis.lower) / (axis.upper - axis.lower);
+    const double share =
+        axis.logarithmic ? std::log(std::max(value, 1e-3 * axis.lower) / axis.lower) / std::log(axis.upper / axis.lower)
+                         : (value - axis.lower) / (axis.upper - axis.lower);
+    return height() - bottom - (height() - head_ - bottom) * share;
 }
 
 double ParallelView::value_at(const Axis& axis, double y) const {
     const double share = (height() - bottom - y) / std::max(1, height() - head_ - bottom);
-    return axis.lower + std::min(1.0, std::max(0.0, share)) * (axis.upper - axis.lower);
+    const double inside = std::clamp(share, 0.0, 1.0);
+    return axis.logarithmic ? axis.lower * std::pow(axis.upper / axis.lower, inside)
+                            : axis.lower + inside * (axis.upper - axis.lower);
 }
 
 void ParallelView::draw_line(QPainter& painter, std::size_t row) const {
@@ -135,8 +143,10 @@ void ParallelView::paintEvent(QPaintEvent*) {
         fill.setAlpha(90);
         painter.fillRect(box, fill);
         painter.drawRect(box);
-        painter.drawText(QPointF(x + 10, box.top() + 4), text(range[1]));
-        painter.drawText(QPointF(x + 10, box.bottom() + 4), text(range[0]));
+        // The two numbers stand apart, however narrow the range.
+        const double apart = std::max(0.0, fontMetrics().height() - box.height()) / 2;
+        painter.drawText(QPointF(x + 10, box.top() + 4 - apart), text(range[1]));
+        painter.drawText(QPointF(x + 10, box.bottom() + 4 + apart), text(range[0]));
     }
 }
 

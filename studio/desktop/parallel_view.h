@@ -20,6 +20,7 @@ public:
         double factor = 1;  ///< shown = factor * SI
         std::vector<double> values;
         double lower = 0, upper = 1;
+        bool logarithmic = false;  ///< its values span decades
     };
     explicit ParallelView(QWidget* parent);
     void show_axes(std::vector<Axis> axes);

@@ -13,15 +13,24 @@ namespace {
 
 bool is_dark(const QPalette& palette) { return palette.color(QPalette::Base).lightness() < 128; }
 
-/// The figure as it is drawn on dark ground: what is black on white is pale there. On a map it lies on pale colours.
+/// The figure as it is drawn on dark ground: what is black on white is pale there, colours and bands stand out as they
+/// do on white. On a map it lies on pale colours.
 core::Figure on_dark(core::Figure figure) {
     const auto pale = [&](core::Colour& colour) {
         if (std::max({colour.red, colour.green, colour.blue}) < 80 && figure.classes.empty() && figure.maps.empty()) {
             colour = {225, 225, 225, colour.alpha};
+        } else if (figure.classes.empty() && figure.maps.empty()) {
+            for (auto* part : {&colour.red, &colour.green, &colour.blue}) {
+                *part = static_cast<unsigned char>(*part + (255 - *part) / 4);
+            }
         }
     };
     for (auto& curve : figure.curves) {
         pale(curve.colour);
+    }
+    for (auto& band : figure.bands) {
+        pale(band.colour);
+        band.colour.alpha = static_cast<unsigned char>(std::min(255, 2 * band.colour.alpha));
     }
     for (auto& points : figure.points) {
         pale(points.colour);

@@ -48,6 +48,7 @@ ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
     header()->setSectionResizeMode(1, QHeaderView::Stretch);
     header()->resizeSection(2, 170);
     header()->resizeSection(3, 210);
+    setColumnHidden(3, true);
     setAccessibleName("Problems");
     setSelectionMode(QAbstractItemView::ExtendedSelection);
     auto* copy = new QAction("&Copy all", this);
@@ -61,11 +62,14 @@ ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
     setContextMenuPolicy(Qt::ActionsContextMenu);
 }
 
-void ProblemList::add(const core::Problem& problem, const QString& hint) {
+void ProblemList::add(const core::Problem& problem, const QString& said_hint) {
     using Severity = core::Problem::Severity;
+    // Errors of a step are one text, with what to do on its own line.
+    const QStringList parts = QString::fromStdString(problem.message).split("\n  hint: ");
+    const QString hint = said_hint.isEmpty() ? parts.value(1) : said_hint;
     // What is found again each time something is drawn stands there once, with the time of the last.
     const QString place = QString::fromStdString(problem.place.text());
-    const QString message = QString::fromStdString(problem.message);
+    const QString message = parts.front();
     for (int i = topLevelItemCount() - 1; i >= std::max(0, topLevelItemCount() - 200); --i) {
         QTreeWidgetItem* known = topLevelItem(i);
         if (problem.severity != Severity::note && same_place(known->data(2, whole_text).toString(), place) &&
@@ -93,6 +97,9 @@ void ProblemList::add(const core::Problem& problem, const QString& hint) {
         item->setToolTip(column, whole[column - 1]);
     }
     item->setData(0, Qt::UserRole, static_cast<int>(problem.severity));
+    if (!hint.isEmpty()) {
+        setColumnHidden(3, false);  // until then the sentences have its room
+    }
     scrollToItem(item);
     if (problem.severity != Severity::note) {
         Q_EMIT counted(++count_);

@@ -109,7 +109,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     vtkNew<MouseStyle> style;
     p.window->GetInteractor()->SetInteractorStyle(style);
     p.bar->SetLookupTable(p.colours);
-    p.bar->SetNumberOfLabels(6);
+    p.bar->SetNumberOfLabels(5);
     p.bar->SetUnconstrainedFontSize(true);
     p.bar->SetBarRatio(0.25);
     p.bar->SetVerticalTitleSeparation(10);
@@ -334,8 +334,7 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
         }
     }
     auto [lower, upper] = range;
-    // Around zero the two sides have two colours; what is of one sign goes from dark to light.
-    const bool both_signs = lower < 0 && upper > 0 && std::min(-lower, upper) > 0.05 * std::max(-lower, upper);
+    const bool both_signs = is_around_zero(range);
     if (both_signs) {
         upper = std::max(-lower, upper);
         lower = -upper;
@@ -361,7 +360,7 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
         std::replace(title.begin(), title.end(), ' ', '\n');
     }
     p.bar->SetTitle(title.c_str());
-    p.bar->SetNumberOfLabels(small ? 3 : 6);
+    p.bar->SetNumberOfLabels(small ? 3 : 5);  // odd: zero is one of them where the colours lie around it
     p.bar->SetVisibility(any && p.tinted.empty());
 }
 

@@ -3,6 +3,7 @@
 
 #include <QString>
 #include <QWidget>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -13,6 +14,11 @@
 #include "postproc/field/field.h"
 
 namespace underbody::studio {
+
+/// Colours lie alike on both sides of zero: to the larger of the two ends.
+[[nodiscard]] inline bool is_around_zero(const std::array<double, 2>& range) {
+    return range[0] < 0 && range[1] > 0 && std::min(-range[0], range[1]) > 0.05 * std::max(-range[0], range[1]);
+}
 
 class Scene {
 public:

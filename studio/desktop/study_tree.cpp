@@ -1,7 +1,7 @@
 #include "studio/desktop/study_tree.h"
 
-#include <QCollator>
 #include <QFont>
+#include <QGuiApplication>
 #include <QHeaderView>
 #include <QScrollBar>
 #include <algorithm>
@@ -10,6 +10,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/natural_order.h"
 #include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/state/exports.h"
@@ -36,14 +37,27 @@ QString status_of(const cases::CaseLoads* loads) {
 
 QString tip(const Session& session, std::size_t index) {
     const auto& one = session.study.cases[index];
-    QString text = qt(one.conditions.label()) + "\n" + qt(one.file.string());
+    QStringList lines{qt(one.conditions.label()), qt(one.file.string())};
     if (const auto* loads = loads_of(session, index)) {
-        text += loads->error.empty() ? "" : "\n" + qt(loads->error);
+        if (!loads->error.empty()) {
+            lines << qt(loads->error);
+        }
         for (const auto& warning : loads->warnings) {
-            text += "\n" + qt(warning.message);
+            lines << qt(warning.message);
         }
     }
-    return text;
+    for (auto& line : lines) {
+        line = "<p>" + line.toHtmlEscaped() + "</p>";  // text with marks is broken into lines
+    }
+    return lines.join("");
+}
+
+/// Of what went wrong, told from what is well on light ground and on dark.
+QVariant ink_of(const QString& status) {
+    const bool dark = QGuiApplication::palette().color(QPalette::Base).lightness() < 128;
+    return status == "failed"    ? QColor(dark ? "#ff8a65" : "#b3261e")
+           : status == "warning" ? QColor(dark ? "#ffb74d" : "#8a5300")
+                                 : QVariant();
 }
 
 constexpr quintptr top = ~quintptr(0);
@@ -177,9 +191,10 @@ QVariant StudyModel::cell(const Group& group, std::size_t row, int column, int r
         return {};
     }
     if (column == status) {
-        return role == Qt::DisplayRole || role == sort_role ? status_of(loads_of(*session_, row))
-               : role == Qt::ToolTipRole                    ? tip(*session_, row)
-                                                            : QVariant();
+        return role == Qt::ForegroundRole                     ? ink_of(status_of(loads_of(*session_, row)))
+               : role == Qt::DisplayRole || role == sort_role ? status_of(loads_of(*session_, row))
+               : role == Qt::ToolTipRole                      ? tip(*session_, row)
+                                                              : QVariant();
     }
     const double value = number(row, column);
     if (role == Qt::TextAlignmentRole) {
@@ -231,12 +246,7 @@ bool StudyFilter::lessThan(const QModelIndex& left, const QModelIndex& right) co
     if (mine.type() == QVariant::Double && others.type() == QVariant::Double) {
         return mine.toDouble() < others.toDouble();
     }
-    static const QCollator natural = [] {
-        QCollator collator(QLocale(QLocale::English));  // the C locale cannot
-        collator.setNumericMode(true);                  // h2 before h10
-        return collator;
-    }();
-    return natural.compare(mine.toString(), others.toString()) < 0;
+    return natural_less(mine.toString(), others.toString());
 }
 
 StudyTree::StudyTree(Desk& desk, QWidget* parent)

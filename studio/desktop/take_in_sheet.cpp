@@ -21,6 +21,8 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
+#include "postproc/loads/loads.h"
+#include "studio/desktop/natural_order.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/unit_sheet.h"
 #include "studio/figures/render.h"
@@ -47,11 +49,26 @@ void gather(const fs::path& path, std::vector<fs::path>& found, core::Progress& 
         for (const auto& entry : fs::directory_iterator(path)) {
             inside.push_back(entry.path());
         }
-        std::sort(inside.begin(), inside.end());
+        std::sort(inside.begin(), inside.end(),
+                  [](const fs::path& a, const fs::path& b) { return natural_less(qt(a.string()), qt(b.string())); });
         for (const auto& one : inside) {
             gather(one, found, progress);
         }
     }
+}
+
+/// What makes its loads less than they seem, before it is taken in: half of a model, most of all.
+QString warnings_of(const postproc::Field& field, const std::string& name, core::Progress& progress) {
+    QString text;
+    try {
+        for (const auto& problem : postproc::loads(field, {}, progress).problems) {
+            if (problem.severity == core::Problem::Severity::warning) {
+                text += "\n" + qt(name + ": " + problem.message);
+            }
+        }
+    } catch (const core::Error&) {  // said when it is computed, with what the sheet was told
+    }
+    return text;
 }
 
 }  // namespace
@@ -152,11 +169,13 @@ TakeInSheet::Found TakeInSheet::look(const fs::path& study, const std::vector<fs
                     reading.units.emplace_back(unit.variable, unit.unit);
                 }
             }
-            for (const auto& zone : postproc::read_field(study / name, reading, progress).zones) {
+            const auto field = postproc::read_field(study / name, reading, progress);
+            for (const auto& zone : field.zones) {
                 if (zone.surface && zone.surface->GetNumberOfCells() > 0) {
                     found.zones.push_back(zone.name);
                 }
             }
+            found.remark += warnings_of(field, name, progress);
             return found;
         } catch (const core::InputError& error) {
             found.remark += (found.remark.isEmpty() ? "" : "\n") + qt(name + " cannot be read: " + error.message());

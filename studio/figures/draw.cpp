@@ -388,13 +388,23 @@ private:
         });
     }
 
-    /// One unit is as long on x as on y: the range of the roomier axis grows when the box is known.
+    /// One unit is as long on x as on y: the range of the roomier axis grows when the box is known. Another box
+    /// begins from the figure's own ranges again, unless they were moved by hand.
     void keep_scales_equal() {
         QCustomPlot* plot = &plot_;
-        QObject::connect(plot, &QCustomPlot::afterLayout, rect_, [plot] {
+        struct Ranges {
+            QCPRange x, y;
+        };
+        const Ranges own{plot->xAxis->range(), plot->yAxis->range()};
+        QObject::connect(plot, &QCustomPlot::afterLayout, rect_, [plot, own, last = own, by_hand = false]() mutable {
             const QRect box = plot->axisRect()->rect();
             QCPAxis& x = *plot->xAxis;
             QCPAxis& y = *plot->yAxis;
+            by_hand = by_hand || x.range() != last.x || y.range() != last.y;
+            if (!by_hand) {
+                x.setRange(own.x);
+                y.setRange(own.y);
+            }
             const double per_x = x.range().size() / std::max(1, box.width());
             const double per_y = y.range().size() / std::max(1, box.height());
             if (per_x > per_y * 1.001) {
@@ -402,6 +412,10 @@ private:
             } else if (per_y > per_x * 1.001) {
                 x.setRange(x.range().center(), per_y * box.width(), Qt::AlignCenter);
             }
+            if (x.range() != last.x || y.range() != last.y) {
+                plot->replot(QCustomPlot::rpQueuedReplot);  // its ticks are laid out before its ranges are known
+            }
+            last = {x.range(), y.range()};
         });
     }
 

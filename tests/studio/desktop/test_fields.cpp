@@ -165,8 +165,8 @@ TEST_F(Window, AFolderOfFilesBecomesCasesOfAStudy) {
     ASSERT_NE(sheet, nullptr);
     EXPECT_EQ(sheet->pattern()->text(), "deep/run7_h{gap:mm}mm_p{pitch:deg}.csv");
     EXPECT_EQ(sheet->files()->rowCount(), 4);
-    EXPECT_EQ(sheet->files()->item(0, 0)->text(), "deep/run7_h20mm_p0.csv");
-    EXPECT_EQ(sheet->files()->item(0, 1)->text(), "20");
+    EXPECT_EQ(sheet->files()->item(0, 0)->text(), "deep/run7_h2mm_p0.csv") << "2 before 20";
+    EXPECT_EQ(sheet->files()->item(0, 1)->text(), "2");
     EXPECT_TRUE(sheet->wrong().contains("unit")) << sheet->wrong().toStdString();
     ASSERT_GE(sheet->units().size(), 2U);
     for (auto* choice : sheet->units()) {
@@ -184,6 +184,8 @@ TEST_F(Window, AFolderOfFilesBecomesCasesOfAStudy) {
     ASSERT_TRUE(window_->has_study()) << window_->last_error().toStdString();
     EXPECT_EQ(window_->desk().session().study.cases.size(), 4U);
     EXPECT_EQ(window_->desk().session().results.loads.rows(), 3U) << "the damaged one is told, the others are computed";
+    EXPECT_TRUE(window_->findChild<ProblemList*>()->text().contains("run7_h3mm_p0")) << "told by its name";
+    EXPECT_EQ(window_->desk().state().workspace, "compare") << "a picture comes first";
     const std::string written = core::read_file(folder / "study.toml");
     fs::remove(folder / "study.toml");
     const auto run = test::run_underbody({command.begin() + 1, command.end()});

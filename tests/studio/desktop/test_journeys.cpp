@@ -1,0 +1,285 @@
+// What sitting down before the window showed to be wrong: each walk of a new user that went wrong once.
+#include <gtest/gtest.h>
+#include <qcustomplot.h>
+
+#include <QApplication>
+#include <QComboBox>
+#include <QLabel>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QTableWidget>
+#include <QTest>
+#include <QWheelEvent>
+
+#include "core/table.h"
+#include "studio/desktop/case_points.h"
+#include "studio/desktop/compare_numbers.h"
+#include "studio/desktop/design_panel.h"
+#include "studio/desktop/explore_panel.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/parallel_view.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/problems_panel.h"
+#include "tests/studio/desktop/heartbeat.h"
+#include "tests/studio/desktop/window_fixture.h"
+
+namespace underbody::studio {
+namespace {
+
+class Journey : public Window {
+protected:
+    /// Not computed.
+    fs::path fresh_study() {
+        test::make_few_gaps(folder_.path() / "fresh");
+        return folder_.path() / "fresh";
+    }
+    static void cut(const fs::path& file) {
+        const std::string text = core::read_file(file);
+        core::write_file(file, text.substr(0, text.size() / 3));
+    }
+    static void replace(const fs::path& file, const std::string& what, const std::string& by) {
+        std::string text = core::read_file(file);
+        const auto at = text.find(what);
+        ASSERT_NE(at, std::string::npos) << what;
+        core::write_file(file, text.replace(at, what.size(), by));
+    }
+    void run(const fs::path& study) {
+        window_->desk().open_and_run(study);
+        settle(*window_);
+    }
+};
+
+TEST_F(Journey, ACaseThatFailedSaysSoAndWhy) {
+    const fs::path study = fresh_study();
+    cut(study / "fields" / "ellipse-h10-p0.csv");
+    run(study);
+    EXPECT_EQ(status_of("ellipse-h10-p0"), "failed");
+    EXPECT_EQ(status_of("ellipse-h5-p0"), "done");
+    EXPECT_TRUE(panel<ProblemList>().text().contains("ellipse-h10-p0.csv"))
+        << panel<ProblemList>().text().toStdString();
+    EXPECT_TRUE(panel<ProblemList>().text().contains("the file")) << "the reader's sentence";
+    fs::copy_file(computed_study() / "fields" / "ellipse-h10-p0.csv", study / "fields" / "ellipse-h10-p0.csv",
+                  fs::copy_options::overwrite_existing);
+    window_->desk().reload();
+    settle(*window_);
+    EXPECT_EQ(status_of("ellipse-h10-p0"), "not run") << "what failed was another file";
+    window_->desk().run_study();
+    settle(*window_);
+    EXPECT_EQ(status_of("ellipse-h10-p0"), "done");
+}
+
+TEST_F(Journey, WhatMakesNumbersLessStandsAmongTheProblems) {
+    const fs::path study = fresh_study();
+    replace(study / "study.toml", "symmetry = \"y\"\n", "");
+    run(study);
+    EXPECT_EQ(status_of("ellipse-h5-p0"), "warning");
+    EXPECT_EQ(panel<ProblemList>().text().count("the surface is not closed"), 1) << "once for all that have it";
+}
+
+TEST_F(Journey, AStudyWithoutShapesBeginsWithItsCases) {
+    const fs::path study = fresh_study();
+    replace(study / "study.toml", "[[body]]\nname = \"ellipse\"\nshape = \"shapes/ellipse.toml\"\n", "");
+    open(study);
+    EXPECT_EQ(window_->desk().state().workspace, "compare");
+    open(computed_study());
+    EXPECT_EQ(window_->desk().state().workspace, "compare") << "where somebody is, he stays";
+}
+
+// The [[table]] that it says makes that table.
+TEST_F(Journey, CasesWithoutATableAreDrawnAndTheTableIsSaid) {
+    const fs::path study = fresh_study();
+    const std::string text = core::read_file(study / "study.toml");
+    core::write_file(study / "study.toml", text.substr(0, text.find("[[table]]")));
+    run(study);
+    act("workspace tables");
+    settle(*window_);
+    EXPECT_TRUE(panel<ForcePanel>().has_picture());
+    const auto& loads = window_->desk().session().results.loads;
+    const auto figure = lift_of_cases(loads);
+    ASSERT_EQ(figure.points.size(), 1U);
+    ASSERT_EQ(figure.points[0].x.size(), 5U);
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_DOUBLE_EQ(figure.points[0].x[i], 1000 * loads.numbers("gap")[i]);
+        EXPECT_DOUBLE_EQ(figure.points[0].y[i], loads.numbers("lift_force")[i]);
+    }
+    core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "\n" + table_of_cases(loads) + "\n");
+    window_->desk().reload();
+    settle(*window_);
+    ASSERT_TRUE(panel<ForcePanel>().table()) << window_->last_error().toStdString();
+    EXPECT_EQ(panel<ForcePanel>().table_name(), "lift");
+}
+
+TEST_F(Journey, OfSeveralPitchesTheTableTakesTheFullest) {
+    core::Table loads;
+    loads.add_numbers("gap", "m", {0.002, 0.005, 0.01, 0.005});
+    loads.add_numbers("pitch", "rad", {0, 0, 0, core::convert(2, "deg", "rad")});
+    loads.add_numbers("lift_force", "N", {0.4, 0.3, 0.35, 0.7});
+    const auto figure = lift_of_cases(loads);
+    ASSERT_EQ(figure.points.size(), 2U);
+    EXPECT_EQ(figure.points[1].name, "pitch 2°");
+    EXPECT_NE(table_of_cases(loads).find("pitch = \"0 deg\""), std::string::npos) << table_of_cases(loads);
+    EXPECT_EQ(table_of_cases({}), "");
+    EXPECT_TRUE(lift_of_cases({}).points.empty());
+}
+
+TEST_F(Journey, AnEmptyStudyIsNoTrap) {
+    core::write_file(folder_.path() / "empty" / "study.toml", "title = \"nothing yet\"\n");
+    open(folder_.path() / "empty");
+    for (const auto& workspace : workspace_names()) {
+        act("workspace " + workspace);
+        settle(*window_);
+        EXPECT_TRUE(window_->last_error().isEmpty()) << workspace << window_->last_error().toStdString();
+    }
+}
+
+// The wheel over a list of parameters rolls it; a value under the mouse was changed in passing.
+TEST_F(Journey, TheWheelChangesNoValueInPassing) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    const std::string before = state_hash(window_->desk().state());
+    const auto turn = [](QWidget* over) {
+        const QPointF at(over->width() / 2.0, over->height() / 2.0);
+        QWheelEvent event(at, over->mapToGlobal(at.toPoint()), {}, {0, -120}, Qt::NoButton, Qt::NoModifier,
+                          Qt::NoScrollPhase, false);
+        QApplication::sendEvent(over, &event);
+        settle(*qobject_cast<MainWindow*>(over->window()));
+    };
+    auto& design = panel<DesignPanel>();
+    QComboBox* base = nullptr;
+    for (auto* box : design.findChildren<QComboBox*>()) {
+        base = box->accessibleName() == "body.base" ? box : base;
+    }
+    ASSERT_NE(base, nullptr);
+    turn(base);
+    auto* slider = design.findChildren<QSlider*>().at(1);
+    turn(slider);
+    EXPECT_EQ(state_hash(window_->desk().state()), before);
+    EXPECT_NE(base->focusPolicy(), Qt::WheelFocus) << "the wheel takes no keyboard either";
+    slider->setFocus();
+    turn(slider);
+    EXPECT_NE(state_hash(window_->desk().state()), before) << "with the keyboard it is meant";
+}
+
+// The section grew away each time that its place was narrower for a moment.
+TEST_F(Journey, TheSectionKeepsItsScale) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    const auto ranges = [&] {
+        std::vector<double> all;
+        for (auto* plot : panel<DesignPanel>().findChildren<QCustomPlot*>()) {
+            plot->replot();
+            all.push_back(plot->xAxis->range().size());
+            all.push_back(plot->yAxis->range().size());
+        }
+        return all;
+    };
+    const auto before = ranges();
+    ASSERT_GE(before.size(), 4U);
+    const QSize size = window_->size();
+    for (const QSize other : {QSize(900, 900), QSize(1800, 600), size}) {
+        window_->resize(other);
+        settle(*window_);
+        static_cast<void>(ranges());
+    }
+    act("workspace explore");
+    settle(*window_);
+    act("workspace design");
+    settle(*window_);
+    const auto after = ranges();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_NEAR(after[i], before[i], 0.02 * before[i]) << i;
+    }
+}
+
+// On the screen of a common laptop nothing is cut: no workspace is rolled to be seen.
+TEST_F(Journey, EveryWorkspaceFitsALaptop) {
+    window_->resize(1440, 900);
+    open(computed_study());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    for (const auto& workspace : workspace_names()) {
+        act("workspace " + workspace);
+        settle(*window_);
+        for (auto* area : window_->centralWidget()->findChildren<QScrollArea*>(QString(), Qt::FindDirectChildrenOnly)) {
+            EXPECT_EQ(area->verticalScrollBar()->maximum(), 0) << workspace;
+            EXPECT_EQ(area->horizontalScrollBar()->maximum(), 0) << workspace;
+        }
+    }
+}
+
+TEST_F(Journey, CurvesUnderAComparisonHaveRoom) {
+    window_->resize(1440, 900);
+    open(computed_study());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    act("workspace compare");
+    settle(*window_);
+    auto& numbers = panel<CompareNumbers>();
+    const int rows = numbers.height();
+    numbers.setCurrentIndex(3);
+    settle(*window_);
+    EXPECT_GE(numbers.findChildren<PlotView*>().last()->height(), 180);
+    numbers.setCurrentIndex(0);
+    settle(*window_);
+    EXPECT_NEAR(numbers.height(), rows, 12) << "the pictures have their room again";
+}
+
+TEST_F(Journey, KeptCasesStandInTheirNaturalOrder) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    QStringList names;
+    for (auto* table : panel<ExplorePanel>().findChildren<QTableWidget*>()) {
+        for (int row = 0; table->accessibleName() == "What is kept" && row < table->rowCount(); ++row) {
+            names << table->item(row, 0)->text();
+        }
+    }
+    EXPECT_EQ(names.join(' '), "ellipse-h2-p0 ellipse-h3-p0 ellipse-h5-p0 ellipse-h10-p0 ellipse-h20-p0");
+    for (auto* box : panel<ExplorePanel>().findChildren<QComboBox*>()) {
+        EXPECT_FALSE(box->accessibleName().endsWith("scatter plot") && box->currentText().contains('_'))
+            << box->currentText().toStdString();
+    }
+}
+
+// A gap of 1 to 100 mm: half way up the axis are 10, not 50.
+TEST_F(Journey, AnAxisOverDecadesIsLogarithmic) {
+    ParallelView view(nullptr);
+    view.resize(600, 300);
+    ParallelView::Axis gap{"gap", "gap (mm)", 1000, {0.001, 0.002, 0.005, 0.1}, 0, 1};
+    ParallelView::Axis pitch{"pitch", "pitch", 1, {-1, 0, 1, 2}, 0, 1};
+    view.show_axes({gap, pitch});
+    double low = 0, high = 0;
+    QObject::connect(&view, &ParallelView::brushed, [&](const QString&, double a, double b) {
+        low = a;
+        high = b;
+    });
+    constexpr int x = 60, bottom = 22;
+    const int middle = (view.head() + 300 - bottom) / 2;
+    QTest::mousePress(&view, Qt::LeftButton, {}, {x, 300 - bottom});
+    QMouseEvent move(QEvent::MouseMove, QPointF(x, middle), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+    QApplication::sendEvent(&view, &move);
+    QTest::mouseRelease(&view, Qt::LeftButton, {}, {x, middle});
+    EXPECT_NEAR(low, 0.001, 1e-5);
+    EXPECT_NEAR(high, 0.01, 0.0005);
+}
+
+// Fault 11 of the first window: a study was computed with 32 stalls of more than 50 ms, the longest of 567 ms.
+TEST_F(Journey, ComputingDoesNotStopTheWindow) {
+    const fs::path study = fresh_study();
+    open(study);
+    for (const auto& workspace : workspace_names()) {  // what is made once at first sight is not of the computing
+        act("workspace " + workspace);
+        settle(*window_);
+    }
+    act("workspace tables");
+    settle(*window_);
+    Heartbeat heartbeat;
+    window_->desk().run_study();
+    settle(*window_);
+    std::printf("longest gap while a study is computed: %.0f ms of processor time\n", 1000 * heartbeat.longest());
+    EXPECT_LT(heartbeat.longest(), 0.1);
+    EXPECT_EQ(status_of("ellipse-h5-p0"), "done");
+}
+
+}  // namespace
+}  // namespace underbody::studio
