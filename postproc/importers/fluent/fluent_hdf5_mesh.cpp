@@ -64,7 +64,7 @@ private:
     };
     [[nodiscard]] std::uint64_t count(const std::string& name) const;
     [[nodiscard]] std::vector<Part> parts(const std::string& path) const;
-    void take_codes(const Part& part, int kind, const Buffer<std::uint32_t>& codes);
+    void take_codes(const Part& part, std::int64_t kind, const Buffer<std::uint32_t>& codes);
     void check_faces_there(const std::vector<Part>& cuts) const;
     [[nodiscard]] std::vector<std::string> zone_names(const std::string& path, std::size_t zones) const;
     void read_nodes();
@@ -262,7 +262,7 @@ std::vector<std::uint32_t> Reader::places_of_used_nodes() {
 
 /// Codes of mixed zones: they tell polyhedra that look like hexahedra. `codes` is empty where all cells are of one
 /// kind.
-void Reader::take_codes(const Part& part, int kind, const Buffer<std::uint32_t>& codes) {
+void Reader::take_codes(const Part& part, std::int64_t kind, const Buffer<std::uint32_t>& codes) {
     const bool mixed = !codes.empty();
     for (auto& block : mesh_.cell_blocks) {
         const std::uint64_t from = std::max(block.first, part.first);

@@ -119,13 +119,16 @@ FineStarts fine_starts(const RegionOptions& o, const std::vector<std::size_t>& e
                        const core::Progress& progress) {
     const std::size_t columns = o.columns;
     std::vector<double> x(edge.size() * fine * fine), y(x.size());
+    const auto middle = [fine](std::size_t part) {
+        return (static_cast<double>(part) + 0.5) / static_cast<double>(fine);
+    };
     for (std::size_t k = 0; k < edge.size(); ++k) {
         if (k % 4096 == 0) {
             progress.check();
         }
         for (std::size_t f = 0; f < fine * fine; ++f) {
-            x[k * fine * fine + f] = in_cell(o, 0, edge[k] % columns, (static_cast<double>(f % fine) + 0.5) / fine);
-            y[k * fine * fine + f] = in_cell(o, 1, edge[k] / columns, (static_cast<double>(f / fine) + 0.5) / fine);
+            x[k * fine * fine + f] = in_cell(o, 0, edge[k] % columns, middle(f % fine));
+            y[k * fine * fine + f] = in_cell(o, 1, edge[k] / columns, middle(f / fine));
         }
     }
     return {std::move(x), std::move(y)};

@@ -86,19 +86,15 @@ void judge(SurfaceProbability& result, const std::vector<Member>& bank, const Ve
     result.mean_squared_innovation = likeliest->count > 0 ? likeliest->squares / likeliest->count : NAN;
 }
 
-/// A filter for each surface and force density, those of one surface beside each other.
-std::vector<Member> bank_of(const std::vector<Surface>& surfaces, const RunSignals& run, const SurfaceOptions& options,
-                            const Vector& prior, const Vector& densities) {
-    std::vector<FilterNoise> noises(densities.size(), options.noise);
-    for (std::size_t d = 0; d < densities.size(); ++d) {
-        noises[d].force_density = densities[d];
-    }
+/// A filter for each surface and noise, those of one surface beside each other. They refer to `surfaces` and `noises`.
+std::vector<Member> bank_of(const std::vector<Surface>& surfaces, const RunSignals& run, const Vector& prior,
+                            const std::vector<FilterNoise>& noises) {
     std::vector<Member> bank;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
         for (const FilterNoise& noise : noises) {
             bank.push_back({ExtendedRunner(surfaces[s].plant, noise)});
             bank.back().runner.start(start_of_run(bank.back().runner, run, noise));
-            bank.back().log_weight = std::log(prior[s] / static_cast<double>(densities.size()));
+            bank.back().log_weight = std::log(prior[s] / static_cast<double>(noises.size()));
         }
     }
     return bank;
@@ -114,7 +110,11 @@ SurfaceProbability identify_surface(const std::vector<Surface>& surfaces, const 
     check_run(run);
     const Vector prior = prior_of(surfaces, options);
     const Vector densities = options.densities.empty() ? Vector{options.noise.force_density} : options.densities;
-    std::vector<Member> bank = bank_of(surfaces, run, options, prior, densities);
+    std::vector<FilterNoise> noises(densities.size(), options.noise);
+    for (std::size_t d = 0; d < densities.size(); ++d) {
+        noises[d].force_density = densities[d];
+    }
+    std::vector<Member> bank = bank_of(surfaces, run, prior, noises);
     SurfaceProbability result;
     std::vector<RunSignals> felt;  // per surface: its input behind that model's actuator
     for (std::size_t s = 0; s < surfaces.size(); ++s) {

@@ -108,7 +108,7 @@ std::vector<Equilibrium> find(const Line& force) {
 double stiffness_in(const Line& drawn, const Equilibrium& e) {
     double slope = 0;
     const double moved = drawn.value(e.gap) / e.stiffness;
-    drawn.value(std::clamp(e.gap + moved, drawn.lower(), drawn.upper()), &slope);
+    static_cast<void>(drawn.value(std::clamp(e.gap + moved, drawn.lower(), drawn.upper()), &slope));
     return -slope;
 }
 

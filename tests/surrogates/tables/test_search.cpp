@@ -13,38 +13,13 @@
 #include "surrogates/tables/search/sampling.h"
 #include "surrogates/tables/search/sensitivity.h"
 #include "surrogates/tables/search/surrogate.h"
+#include "tests/surrogates/tables/discrepancy.h"
 
 namespace {
 
 using namespace underbody;
 using namespace underbody::tables;
 using std::numbers::pi;
-
-/// Centred L2 discrepancy (Hickernell 1998): how unevenly the points fill the cube.
-double discrepancy(const Plan& plan) {
-    if (plan.empty()) {
-        return 0;
-    }
-    const auto n = static_cast<double>(plan.size());
-    const std::size_t axes = plan.front().size();
-    double one = 0, two = 0;
-    for (const auto& x : plan) {
-        double product = 1;
-        for (const double c : x) {
-            const double d = std::abs(c - 0.5);
-            product *= 1 + 0.5 * d - 0.5 * d * d;
-        }
-        one += product;
-        for (const auto& y : plan) {
-            product = 1;
-            for (std::size_t a = 0; a < axes; ++a) {
-                product *= 1 + 0.5 * std::abs(x[a] - 0.5) + 0.5 * std::abs(y[a] - 0.5) - 0.5 * std::abs(x[a] - y[a]);
-            }
-            two += product;
-        }
-    }
-    return std::sqrt(std::max(0.0, std::pow(13.0 / 12, static_cast<double>(axes)) - 2 / n * one + two / (n * n)));
-}
 
 /// Branin and Hoo 1972: minimum 0.397887 at (-pi, 12.275), (pi, 2.275), (9.42478, 2.475).
 double branin(double x, double y) {
@@ -194,10 +169,10 @@ TEST(Search, ErrorsHoldOnShapesThatWereLeftOut) {
         EXPECT_EQ(surrogate.check().points, 144u);
         EXPECT_LT(surrogate.check().root_mean_square, 0.5 * surrogate.check().nearest_shape);
         EXPECT_GE(surrogate.check().inside_95, 0.88);
-        const double p = surrogate.check().inside_95;
+        const double share = surrogate.check().inside_95;
         for (const double end : {surrogate.check().inside_lower, surrogate.check().inside_upper}) {
             // Wilson: the share whose own spread over 24 shapes reaches what was seen.
-            EXPECT_NEAR(std::abs(end - p), 1.96 * std::sqrt(end * (1 - end) / 24), 1e-9);
+            EXPECT_NEAR(std::abs(end - share), 1.96 * std::sqrt(end * (1 - end) / 24), 1e-9);
         }
         for (std::size_t s = 24; s < shapes.size(); ++s) {  // fresh shapes, at gaps and pitches between
             const std::vector<double> x = {variables[0].unscaled(shapes[s][0]), variables[1].unscaled(shapes[s][1]),
@@ -304,7 +279,7 @@ TEST(Search, PlansFillTheCube) {
             c = random.uniform();
         }
     }
-    EXPECT_LT(discrepancy(whole), 0.5 * discrepancy(scattered));
+    EXPECT_LT(test::discrepancy(whole), 0.5 * test::discrepancy(scattered));
 }
 
 TEST(Search, SensitivitiesOfIshigamisFunction) {

@@ -21,6 +21,7 @@
 #include "core/random.h"
 #include "surrogates/tables/fit/gaussian_process.h"
 #include "surrogates/tables/search/sampling.h"
+#include "tests/surrogates/tables/discrepancy.h"
 
 namespace underbody {
 namespace {
@@ -151,7 +152,7 @@ TEST(OpenTurns, FillsTheCubeByItsSobolSequenceNoBetter) {
                         shifted[i][a] = std::ldexp((bits(theirs(i, a)) ^ same_shift) + 0.5, -32);
                     }
                 }
-                own += tables::discrepancy(ours), other += tables::discrepancy(shifted);
+                own += test::discrepancy(ours), other += test::discrepancy(shifted);
                 EXPECT_TRUE(axes > 2 || ours == shifted);
             }
             EXPECT_LE(own, 1.05 * other) << count << " points on " << axes << " axes";
@@ -180,7 +181,7 @@ TEST(OpenTurns, SpreadsLatinHypercubesNoWider) {
         const tables::Plan plan = tables::latin_hypercube(count, axes, seed);
         const double distance = tables::smallest_distance(plan);
         EXPECT_NEAR(OT::SpaceFillingMinDist().evaluate(sample(plan)), distance, 1e-12);
-        EXPECT_NEAR(OT::SpaceFillingC2().evaluate(sample(plan)), tables::discrepancy(plan), 1e-12);
+        EXPECT_NEAR(OT::SpaceFillingC2().evaluate(sample(plan)), test::discrepancy(plan), 1e-12);
         double theirs = 0;
         for (int k = 0; k < 50; ++k) {
             theirs = std::max(theirs, OT::SpaceFillingMinDist().evaluate(experiment.generate()));
