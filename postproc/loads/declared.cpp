@@ -254,27 +254,37 @@ std::vector<std::pair<Problem, std::size_t>> other_sizes(const std::vector<Condi
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return sizes[a] < sizes[b]; });
     std::vector<std::pair<Problem, std::size_t>> found;
     const std::size_t few = order.size() < 4 ? 0 : order.size() / 3;
-    const auto tell = [&](std::size_t from, std::size_t to, double ratio) {
+    /// Cases from..to beside the one of the others that is nearest in size.
+    const auto tell = [&](std::size_t from, std::size_t to, std::size_t nearest) {
         for (std::size_t k = from; k < to; ++k) {
             found.emplace_back(
                 Problem{Problem::Severity::warning,
-                        "'" + cases[order[k]].name + "' has forces " + core::format_number(ratio, 3) +
-                            " times those of every other case: is its pressure in another unit, or over density?",
+                        "'" + cases[order[k]].name + "' has forces " +
+                            core::format_number(sizes[order[k]] / sizes[order[nearest]], 3) +
+                            (to - from > 1 ? " times those of most other cases" : " times those of every other case") +
+                            ": is its pressure in another unit, or over density?",
                         {}},
                 order[k]);
         }
     };
+    std::size_t large = 0, small = 0;  // of each, the largest group that stands apart
     for (std::size_t k = 1; k <= few; ++k) {
         const std::size_t n = order.size();
         const double above = sizes[order[n - k]] / sizes[order[n - k - 1]];
         const double below = sizes[order[k]] / sizes[order[k - 1]];
         if (above > far) {
-            tell(n - k, n, above);
+            large = k;
         }
         // A force that passes through nought may be as small as it likes; one read in kPa is so by a thousand.
         if (below > thousand / slack && below < thousand * slack) {
-            tell(0, k, 1 / below);
+            small = k;
         }
+    }
+    if (large > 0) {
+        tell(order.size() - large, order.size(), order.size() - large - 1);
+    }
+    if (small > 0) {
+        tell(0, small, small);
     }
     return found;
 }

@@ -76,12 +76,13 @@ void Desk::take_session(const SessionPointer& fresh) {
             Q_EMIT found({core::Problem::Severity::warning, error.message(), error.place()});
         }
     }
+    session = with_failures(session);
     std::erase_if(earlier_, [&](const SessionPointer& one) { return one->folder == session->folder; });
     earlier_.push_back(session);
     if (earlier_.size() > 3) {
         earlier_.erase(earlier_.begin());
     }
-    session_ = with_failures(session);
+    session_ = session;
     tell_problems();
     Q_EMIT session_changed();
 }
@@ -120,7 +121,8 @@ void Desk::tell_problems() {
             Q_EMIT found(note);
         }
     }
-    for (const auto& problem : session_->results.gathered_warnings(false)) {
+    // They count the cases that are alike: said when all are there.
+    for (const auto& problem : computing() ? core::Problems{} : session_->results.gathered_warnings(false)) {
         Q_EMIT found({Severity::warning, problem.message, {problem.place.file, {}, {}, {}}});
     }
     tell_steps(session_->results.steps);

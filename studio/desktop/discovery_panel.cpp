@@ -249,7 +249,8 @@ void DiscoveryPanel::show_measurement() {
         page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(width);
     }
     accept_->setText(accepted ? "&Take back" : "&Accept");
-    const int rolled = page_->verticalScrollBar()->value();
+    const int rolled = name == shown_ ? page_->verticalScrollBar()->value() : 0;
+    shown_ = name;
     page_->setHtml(page);
     page_->verticalScrollBar()->setValue(rolled);
 }

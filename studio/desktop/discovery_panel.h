@@ -31,6 +31,7 @@ protected:
 
 private:
     void show_measurement();
+    std::string shown_;  ///< the measurement whose page it is
     int drawn_for_ = 0;  ///< width of the page that its pictures are fitted to, px
     QComboBox* choice_ = nullptr;
     QPushButton* accept_ = nullptr;

@@ -160,7 +160,7 @@ void ForcePanel::choose_table(bool fresh) {
     const std::string name = state().current("table", names);
     const auto* spec = session().study.find_table(name);
     QString why;
-    if (spec == nullptr && !lift_of_cases(session().results.loads).points.empty()) {
+    if (spec == nullptr && !lift_of_cases(session().study, session().results).points.empty()) {
         show_cases();
         return;
     }
@@ -195,8 +195,8 @@ void ForcePanel::show_cases() {
     about_->setText(
         "<b>No force table yet.</b> The points are the loads of the cases. In study.toml this makes a "
         "table of them, with its error, equilibria and exports:<pre>" +
-        html(table_of_cases(session().results.loads)) + "</pre>");
-    plot_->show_figure(lift_of_cases(session().results.loads), true);
+        html(table_of_cases(session().study, session().results)) + "</pre>");
+    plot_->show_figure(lift_of_cases(session().study, session().results), true);
 }
 
 void ForcePanel::fit(const cases::TableSpec& spec) {

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cases/case_loads.h"
 #include "cases/guess_pattern.h"
 #include "core/error.h"
 #include "core/name_pattern.h"
@@ -58,10 +59,15 @@ void gather(const fs::path& path, std::vector<fs::path>& found, core::Progress& 
 }
 
 /// What makes its loads less than they seem, before it is taken in: half of a model, most of all.
-QString warnings_of(const postproc::Field& field, const std::string& name, core::Progress& progress) {
+QString warnings_of(const postproc::Field& field, const fs::path& study, const std::string& name,
+                    core::Progress& progress) {
     QString text;
     try {
-        for (const auto& problem : postproc::loads(field, {}, progress).problems) {
+        postproc::LoadsOptions options;
+        if (fs::exists(study / "study.toml")) {  // up, forward and symmetry are the study's
+            options = cases::loads_options(cases::Study::open(study), {});
+        }
+        for (const auto& problem : postproc::loads(field, options, progress).problems) {
             if (problem.severity == core::Problem::Severity::warning) {
                 text += "\n" + qt(name + ": " + problem.message);
             }
@@ -175,7 +181,7 @@ TakeInSheet::Found TakeInSheet::look(const fs::path& study, const std::vector<fs
                     found.zones.push_back(zone.name);
                 }
             }
-            found.remark += warnings_of(field, name, progress);
+            found.remark += warnings_of(field, study, name, progress);
             return found;
         } catch (const core::InputError& error) {
             found.remark += (found.remark.isEmpty() ? "" : "\n") + qt(name + " cannot be read: " + error.message());

@@ -301,13 +301,14 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
         [&](std::size_t begin, std::size_t end) {
             CellShape cell;
             CellPart part;
+            Tally tally;
             part.nodes.reserve(8 * (end - begin));
             for (std::size_t i = begin; i < end; ++i) {
                 gather(cells.first + i, cell);
                 recognise(cell, mesh_.dimension, polyhedron(i));
                 types[i] = cell.type;
                 lengths[i] = static_cast<std::uint32_t>(cell.nodes.size());
-                tallies[begin / block_of_cells].add(cell, mesh_);
+                tally.add(cell, mesh_);
                 if (cell.type == vtk_empty) {
                     continue;
                 }
@@ -322,6 +323,7 @@ CellArrays CellBuilder::build_any(const CellBlock& cells, core::Progress& progre
             part.connectivity = part.nodes.size();
             part.stream = part.faces.size();
             parts[begin / block_of_cells] = std::move(part);
+            tallies[begin / block_of_cells] = tally;
         },
         progress);
     CellArrays out;

@@ -328,8 +328,8 @@ End PitchEnds::go(const PitchState& start) const {
                     return *end;
                 }
             } else {  // beyond the escape gap the step went on, the motion did not
-                const bool left = path.y[0] >= escape_ ? outside(escape_, path.y[2]) : leaves_tables(ode);
-                path.held.outside = path.held.outside || left;
+                path.held.outside =
+                    path.held.outside || (path.y[0] >= escape_ ? outside(escape_, path.y[2]) : leaves_tables(ode));
             }
             if (const std::optional<End> end = path.arrived()) {
                 return *end;

@@ -6,6 +6,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "surrogates/dynamics/model/effect.h"
 
 namespace underbody::dynamics {
@@ -44,14 +45,13 @@ core::Problems held_outside(const Model& model, const Conditions& held) {
             if (!held.has(channel) || (held[channel] >= axis.lower && held[channel] <= axis.upper)) {
                 continue;
             }
-            found.push_back(
-                {core::Problem::Severity::warning,
-                 axis.name + " " + core::format_number(held[channel], 6) + " " + axis.unit + " is outside the " +
-                     source.quantity + " table " + source.table_file + ", which covers " +
-                     core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6) + " " +
-                     axis.unit + ": its end value is held, the force is that at " +
-                     core::format_number(held[channel] < axis.lower ? axis.lower : axis.upper, 6) + " " + axis.unit,
-                 {source.table_path.string(), {}, {}, {}}});
+            found.push_back({core::Problem::Severity::warning,
+                             axis.name + " " + core::told(held[channel], axis.unit) + " is outside the " +
+                                 source.quantity + " table " + source.table_file + ", which covers " +
+                                 core::told_range(axis.lower, axis.upper, axis.unit) +
+                                 ": its end value is held, the force is that at " +
+                                 core::told(held[channel] < axis.lower ? axis.lower : axis.upper, axis.unit),
+                             {source.table_path.string(), {}, {}, {}}});
         }
     }
     return found;

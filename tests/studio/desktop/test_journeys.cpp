@@ -58,6 +58,10 @@ TEST_F(Journey, ACaseThatFailedSaysSoAndWhy) {
     EXPECT_TRUE(panel<ProblemList>().text().contains("ellipse-h10-p0.csv"))
         << panel<ProblemList>().text().toStdString();
     EXPECT_TRUE(panel<ProblemList>().text().contains("the file")) << "the reader's sentence";
+    const auto before = window_->desk().session_pointer();
+    act("workspace tables");
+    settle(*window_);
+    EXPECT_EQ(window_->desk().session_pointer(), before) << "an action is no reason to read the study again";
     fs::copy_file(computed_study() / "fields" / "ellipse-h10-p0.csv", study / "fields" / "ellipse-h10-p0.csv",
                   fs::copy_options::overwrite_existing);
     window_->desk().reload();
@@ -95,31 +99,67 @@ TEST_F(Journey, CasesWithoutATableAreDrawnAndTheTableIsSaid) {
     settle(*window_);
     EXPECT_TRUE(panel<ForcePanel>().has_picture());
     const auto& loads = window_->desk().session().results.loads;
-    const auto figure = lift_of_cases(loads);
+    const auto& session = window_->desk().session();
+    const auto figure = lift_of_cases(session.study, session.results);
     ASSERT_EQ(figure.points.size(), 1U);
     ASSERT_EQ(figure.points[0].x.size(), 5U);
     for (std::size_t i = 0; i < 5; ++i) {
         EXPECT_DOUBLE_EQ(figure.points[0].x[i], 1000 * loads.numbers("gap")[i]);
         EXPECT_DOUBLE_EQ(figure.points[0].y[i], loads.numbers("lift_force")[i]);
     }
-    core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "\n" + table_of_cases(loads) + "\n");
+    core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "\n" +
+                                               table_of_cases(session.study, session.results) + "\n");
     window_->desk().reload();
     settle(*window_);
     ASSERT_TRUE(panel<ForcePanel>().table()) << window_->last_error().toStdString();
     EXPECT_EQ(panel<ForcePanel>().table_name(), "lift");
 }
 
-TEST_F(Journey, OfSeveralPitchesTheTableTakesTheFullest) {
-    core::Table loads;
-    loads.add_numbers("gap", "m", {0.002, 0.005, 0.01, 0.005});
-    loads.add_numbers("pitch", "rad", {0, 0, 0, core::convert(2, "deg", "rad")});
-    loads.add_numbers("lift_force", "N", {0.4, 0.3, 0.35, 0.7});
-    const auto figure = lift_of_cases(loads);
-    ASSERT_EQ(figure.points.size(), 2U);
-    EXPECT_EQ(figure.points[1].name, "pitch 2°");
-    EXPECT_NE(table_of_cases(loads).find("pitch = \"0 deg\""), std::string::npos) << table_of_cases(loads);
-    EXPECT_EQ(table_of_cases({}), "");
-    EXPECT_TRUE(lift_of_cases({}).points.empty());
+// Every condition that tells cases at equal gaps apart is in it, as a number that selects them.
+TEST_F(Journey, OfSeveralConditionsTheTableTakesTheFullest) {
+    cases::Study study;
+    cases::StudyResults results;
+    const auto add = [&](double gap, std::optional<double> pitch, const std::string& variant, double lift) {
+        cases::Case one;
+        one.conditions.set("gap", gap);
+        one.conditions.set("speed", 0.5);
+        if (pitch) {
+            one.conditions.set("pitch", *pitch);
+        }
+        one.conditions.texts = {{"variant", variant}};
+        results.case_loads.emplace_back();
+        results.case_loads.back().entry = study.cases.size();
+        results.case_loads.back().values = {{"lift_force", "N", lift}};
+        study.cases.push_back(one);
+    };
+    EXPECT_EQ(table_of_cases(study, results), "");
+    EXPECT_TRUE(lift_of_cases(study, results).points.empty());
+    for (const double pitch : {0.0, 0.1, core::convert(12.345, "deg", "rad"), core::convert(2, "deg", "rad")}) {
+        study = {};
+        results = {};
+        for (const double gap : {0.002, 0.005, 0.01}) {
+            add(gap, pitch, "plain", 0.4);
+        }
+        add(0.005, pitch + 0.02, "plain", 0.7);
+        add(0.005, pitch, "wide", 0.9);
+        for (const double gap : {0.001, 0.002, 0.003, 0.004}) {
+            add(gap, {}, "unknown pitch", 0.2);
+        }
+        const auto figure = lift_of_cases(study, results);
+        ASSERT_EQ(figure.points.size(), 4U);
+        EXPECT_EQ(figure.points[0].x.size(), 3U);
+        const std::string text = table_of_cases(study, results);
+        EXPECT_EQ(text.find("speed"), std::string::npos) << "the same in all: " << text;
+        std::string where = text.substr(text.find("{") + 1);
+        where = where.substr(0, where.find("}"));
+        std::erase(where, '"');
+        std::erase(where, ' ');
+        const auto wanted = cases::conditions_from(where);
+        for (std::size_t i = 0; i < study.cases.size(); ++i) {
+            EXPECT_EQ(study.cases[i].conditions.satisfies(wanted), i < 3) << text << " of case " << i;
+        }
+    }
+    EXPECT_NE(table_of_cases(study, results).find("pitch = \"2 deg\""), std::string::npos);
 }
 
 TEST_F(Journey, AnEmptyStudyIsNoTrap) {

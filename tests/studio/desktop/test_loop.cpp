@@ -75,7 +75,7 @@ TEST_F(Dropped, ALogIsJudged) {
     EXPECT_NE(session.results.document("discovery/flight"), nullptr);
     const QString page = panel<DiscoveryPanel>().findChild<QTextBrowser*>()->toPlainText();
     EXPECT_TRUE(page.contains("flight")) << page.toStdString();
-    EXPECT_TRUE(page.contains("held out")) << "residual before and after: " << page.toStdString();
+    EXPECT_TRUE(page.contains("on the data it was fitted to")) << "one run holds nothing out: " << page.toStdString();
     // The command does the same.
     const std::string written = core::read_file(study / "study.toml");
     const fs::path data = study / "measurements" / "flight" / "dataset.toml";

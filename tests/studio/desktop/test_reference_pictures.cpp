@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double allowed = 0.04;
+constexpr double allowed = 0.02;  ///< the same machine differs by 0.0003, another workspace by 0.037 and more
 const QSize compared(256, 160);
 const std::vector<std::string> workspaces = {"design", "explore", "compare", "tables", "stability", "loop"};
 
@@ -58,7 +58,12 @@ const fs::path& study() {
     return made;
 }
 
-class ReferencePictures : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+struct Look {
+    std::string theme, scale;
+    friend void PrintTo(const Look& look, std::ostream* out) { *out << look.theme << ' ' << look.scale << 'x'; }
+};
+
+class ReferencePictures : public ::testing::TestWithParam<Look> {};
 
 TEST_P(ReferencePictures, OfEveryWorkspace) {
     if (std::system("command -v Xvfb > /dev/null 2>&1") != 0) {
@@ -82,7 +87,7 @@ TEST_P(ReferencePictures, OfEveryWorkspace) {
         const fs::path shot = folder.path() / "shots" / (workspace + ".png");
         const QImage image = small(shot);
         ASSERT_FALSE(image.isNull()) << shot;
-        EXPECT_EQ(QImage(QString::fromStdString(shot.string())).width(), 1280 * std::atoi(scale));
+        EXPECT_EQ(QImage(QString::fromStdString(shot.string())).width(), 1280 * std::stoi(scale));
         if (std::getenv("UNDERBODY_WRITE_PICTURES") != nullptr) {
             fs::create_directories(test::data_folder() / "desktop");
             image.save(QString::fromStdString(reference(workspace, theme, scale).string()));
@@ -92,18 +97,23 @@ TEST_P(ReferencePictures, OfEveryWorkspace) {
         ASSERT_FALSE(known.isNull()) << reference(workspace, theme, scale);
         EXPECT_LE(difference(image, known), allowed) << workspace << " " << theme << " " << scale << "x";
         // Another theme, or another workspace, is not taken for this one.
-        const std::string other = std::string(theme) == "dark" ? "light" : "dark";
-        EXPECT_GT(difference(image, small(reference(workspace, other, scale))), 4 * allowed);
+        const std::string other = theme == "dark" ? "light" : "dark";
+        const auto apart = [&](const fs::path& reference) {
+            const QImage that = small(reference);
+            EXPECT_FALSE(that.isNull()) << reference;
+            return that.isNull() ? 0 : difference(image, that);
+        };
+        EXPECT_GT(apart(reference(workspace, other, scale)), 4 * allowed);
         for (const auto& another : workspaces) {
-            EXPECT_TRUE(another == workspace || difference(image, small(reference(another, theme, scale))) > allowed)
+            EXPECT_TRUE(another == workspace || apart(reference(another, theme, scale)) > allowed)
                 << workspace << " passes for " << another;
         }
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ReferencePictures,
-                         ::testing::Values(std::pair{"light", "1"}, std::pair{"light", "2"}, std::pair{"dark", "1"},
-                                           std::pair{"dark", "2"}));
+                         ::testing::Values(Look{"light", "1"}, Look{"light", "2"}, Look{"dark", "1"},
+                                           Look{"dark", "2"}));
 
 }  // namespace
 }  // namespace underbody

@@ -359,7 +359,7 @@ TEST_F(Window, EquilibriaStandWithTheErrorsOfTheReport) {
         EXPECT_EQ(list->item(row, 6)->text(), one.frequency_sigma > 0 ? shown(one.frequency_sigma) : QString("–"));
     }
     const QString before = list->item(0, 4)->text();
-    act("table lift net_weight=0.2N");
+    act("table lift net_weight=0.28N");
     settle(*window_);
     ASSERT_GT(list->rowCount(), 0);
     EXPECT_NE(list->item(0, 4)->text(), before);
