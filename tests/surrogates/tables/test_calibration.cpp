@@ -29,8 +29,8 @@ void judge(std::size_t axes, std::size_t seeds) {
         const bool exact = setting.name.ends_with("exact") && !setting.grid.empty();
         // A few forces of a kind leave their own chance; the long run has enough of them for the bounds that are meant.
         EXPECT_GT(c.share, long_run() ? 0.60 : 0.52) << setting.name;
-        EXPECT_LT(c.share, exact ? 0.93 : long_run() ? 0.78 : 0.86) << setting.name;
-        EXPECT_GT(c.scale, 1 / (exact ? 2.2 : long_run() ? 1.3 : 1.6)) << setting.name;
+        EXPECT_LT(c.share, exact ? (long_run() ? 0.85 : 0.90) : long_run() ? 0.78 : 0.86) << setting.name;
+        EXPECT_GT(c.scale, 1 / (exact ? 1.6 : long_run() ? 1.3 : 1.6)) << setting.name;
         share += c.share;
         ++count;
     }
