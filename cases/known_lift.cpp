@@ -71,6 +71,27 @@ KnownLift by_surrogate(const LiftSurrogate& known, std::vector<double> at) {
     return lift;
 }
 
+constexpr int curve_steps = 60;  ///< of a curve over the gap
+
+/// Where the surrogate is asked for a shape.
+struct Asked {
+    std::vector<double> at;  ///< one a variable of the surrogate
+    std::size_t gap = 0;     ///< which of them is the gap; the number of variables where one gap was computed
+};
+
+Asked asked_at(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
+    const auto& variables = known.surrogate.variables();
+    Asked asked{lift.design, variables.size()};
+    for (std::size_t v = known.spec.variables.size(); v < variables.size(); ++v) {
+        asked.gap = variables[v].name == "gap" ? v : asked.gap;
+        asked.at.push_back(variables[v].name == "gap"     ? known.spec.gaps.front()
+                           : variables[v].name == "pitch" ? pitch
+                           : variables[v].name == "speed" ? speed
+                                                          : known.spec.jet.values.front());
+    }
+    return asked;
+}
+
 /// The lift over the gap of one variant.
 bool is_lift_of(const TableSpec& table, const NamedShape& shape) {
     const auto variant = table.where.text("variant");
@@ -149,14 +170,7 @@ KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, 
 
 core::Figure surrogate_lift_figure(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
     const auto& variables = known.surrogate.variables();
-    std::vector<double> x = lift.design;
-    std::size_t gap = variables.size();
-    for (std::size_t v = known.spec.variables.size(); v < variables.size(); ++v) {
-        gap = variables[v].name == "gap" ? v : gap;
-        x.push_back(variables[v].name == "pitch"   ? pitch
-                    : variables[v].name == "speed" ? speed
-                                                   : known.spec.gaps.front());
-    }
+    auto [x, gap] = asked_at(known, lift, pitch, speed);
     const auto given = [&](const char* name, const std::vector<double>& values, double wanted, const char* unit) {
         const double at = values.size() > 1 ? wanted : values.front();
         return std::string(name) + " " +
@@ -176,9 +190,9 @@ core::Figure surrogate_lift_figure(const LiftSurrogate& known, const KnownLift& 
     core::FigureBand band;
     band.name = "two standard deviations";
     const bool along = gap < variables.size();
-    for (int i = 0; i <= (along ? 60 : 0); ++i) {
+    for (int i = 0; i <= (along ? curve_steps : 0); ++i) {
         if (along) {
-            x[gap] = variables[gap].unscaled(i / 60.0);
+            x[gap] = variables[gap].unscaled(i / double{curve_steps});
         }
         const auto p = known.surrogate.at(x);
         curve.x.push_back(1000 * (along ? x[gap] : known.spec.gaps.front()));
@@ -198,6 +212,38 @@ core::Figure surrogate_lift_figure(const LiftSurrogate& known, const KnownLift& 
                                  core::palette(0)});
     }
     return figure;
+}
+
+tables::ForceTable surrogate_lift_table(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
+    auto [x, gap] = asked_at(known, lift, pitch, speed);
+    const auto& variables = known.surrogate.variables();
+    if (gap == variables.size()) {
+        throw core::InputError("missing", "the search of [design] computed its shapes at one gap alone", {},
+                               "give it several: gap = [\"2 mm\", \"5 mm\", \"10 mm\"]");
+    }
+    std::vector<double> gaps, lifts, sigmas;
+    for (int i = 0; i <= curve_steps; ++i) {
+        x[gap] = variables[gap].unscaled(i / double{curve_steps});
+        const auto p = known.surrogate.at(x);
+        gaps.push_back(x[gap]);
+        lifts.push_back(p.value);
+        sigmas.push_back(p.sigma);
+    }
+    core::Table points;
+    points.source = lift.words();
+    points.add_numbers("gap", "m", gaps);
+    points.add_numbers("lift_force", "N", lifts);
+    if (*std::min_element(sigmas.begin(), sigmas.end()) > 0) {
+        points.add_numbers("lift_force_sigma", "N", sigmas);
+    }
+    tables::FitOptions options;
+    options.axes = {"gap"};
+    options.kind = tables::FitOptions::Kind::interpolation;
+    return tables::ForceTable::fit(points, "lift_force", options);
+}
+
+double surrogate_speed(const LiftSurrogate& known, double speed) {
+    return known.spec.speeds.size() > 1 ? speed : known.spec.speeds.front();
 }
 
 }  // namespace underbody::cases

@@ -13,6 +13,7 @@
 #include "core/figure.h"
 #include "core/progress.h"
 #include "geometry/body/body_shape.h"
+#include "surrogates/tables/fit/force_table.h"
 #include "surrogates/tables/search/surrogate.h"
 
 namespace underbody::cases {
@@ -57,5 +58,12 @@ KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, 
 /// Lift over the gap at a pitch (rad) and speed (m/s) for `known.design`, with a band of two standard deviations; one
 /// point when one gap was computed. Conditions that were not varied are those of the runs: the caption says them.
 core::Figure surrogate_lift_figure(const LiftSurrogate& surrogate, const KnownLift& known, double pitch, double speed);
+
+/// The same curve as a table over the gap, its errors one standard deviation. Throws core::InputError (missing) when
+/// one gap was computed.
+tables::ForceTable surrogate_lift_table(const LiftSurrogate& surrogate, const KnownLift& known, double pitch,
+                                        double speed);
+/// The speed that a curve of the surrogate is at, m/s: `speed` where several were computed, else that of the runs.
+double surrogate_speed(const LiftSurrogate& surrogate, double speed);
 
 }  // namespace underbody::cases

@@ -38,6 +38,10 @@ DesignPanel::DesignPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     rest_->setSingleShot(true);
     rest_->setInterval(120);
     connect(rest_, &QTimer::timeout, this, &DesignPanel::ask_rest);
+    map_rest_ = new QTimer(this);
+    map_rest_->setSingleShot(true);
+    map_rest_->setInterval(120);
+    connect(map_rest_, &QTimer::timeout, this, &DesignPanel::ask_map);
     build();
 }
 
@@ -60,9 +64,13 @@ void DesignPanel::build() {
     }
     section_ = new PlotView(this);
     upper->addWidget(section_);
+    auto* lower = new QSplitter(Qt::Horizontal);
     lift_plot_ = new PlotView(this);
+    map_plot_ = new PlotView(this);
+    lower->addWidget(lift_plot_);
+    lower->addWidget(map_plot_);
     views->addWidget(upper);
-    views->addWidget(lift_plot_);
+    views->addWidget(lower);
     views->setStretchFactor(0, 3);
     views->setStretchFactor(1, 2);
     auto* side = new QWidget;
@@ -73,6 +81,7 @@ void DesignPanel::build() {
     build_side(*column);
     connect(section_, &PlotView::hovered, this, &Panel::remark);
     connect(lift_plot_, &PlotView::hovered, this, &Panel::remark);
+    connect(map_plot_, &PlotView::hovered, this, &Panel::remark);
 }
 
 void DesignPanel::build_side(QVBoxLayout& side) {
@@ -131,6 +140,9 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     lift_label_ = new QLabel;
     lift_label_->setWordWrap(true);
     side.addWidget(lift_label_);
+    map_label_ = new QLabel;
+    map_label_->setWordWrap(true);
+    side.addWidget(map_label_);
 }
 
 void DesignPanel::connect_row(ParameterRow* row, const std::string& verb, const std::string& key,
@@ -282,6 +294,8 @@ void DesignPanel::draw_again(bool fresh) {
         shown_.reset();
         section_->show_text("This study has no [[body]]; drop a SHAPE.toml on the window");
         lift_plot_->show_text("");
+        map_plot_->show_text("");
+        map_label_->clear();
         return;
     }
     choice_->setCurrentText(qt(name));
@@ -343,12 +357,16 @@ void DesignPanel::ask_move() {
         });
 }
 
-void DesignPanel::ask_rest() {
+bool DesignPanel::dragging() const {
     bool drag = gap_->dragging() || pitch_->dragging() || speed_->dragging();
     for (const auto& [name, row] : rows_) {
         drag = drag || row->dragging();
     }
-    if (drag) {
+    return drag;
+}
+
+void DesignPanel::ask_rest() {
+    if (dragging()) {
         rest_->start();
         return;
     }

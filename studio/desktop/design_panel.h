@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cases/known_lift.h"
+#include "cases/study.h"
 #include "studio/desktop/live_body.h"
 #include "studio/desktop/panel.h"
 
@@ -14,6 +15,10 @@ class QTableWidget;
 class QTimer;
 class QVBoxLayout;
 
+namespace underbody::dynamics {
+struct StabilityRegion;
+}
+
 namespace underbody::tables {
 class ForceTable;
 }
@@ -22,6 +27,13 @@ namespace underbody::studio {
 
 class ParameterRow;
 class PlotView;
+
+/// The stability map of a shape.
+struct ShapeMap {
+    std::shared_ptr<const dynamics::StabilityRegion> region;  ///< nullptr: there is none
+    std::string vehicle;                                      ///< whose it is, in words
+    std::string why;                                          ///< there is none
+};
 
 class DesignPanel : public Panel {
     Q_OBJECT
@@ -36,6 +48,9 @@ public:
     [[nodiscard]] QTableWidget* card() const { return card_; }
     /// What the lift that is drawn rests on.
     [[nodiscard]] const cases::KnownLift& lift() const { return lift_; }
+    /// The map that is shown; nullptr while there is none.
+    [[nodiscard]] std::shared_ptr<const ShapeMap> map() const { return map_; }
+    [[nodiscard]] const PlotView* map_plot() const { return map_plot_; }
 
 Q_SIGNALS:
     /// CFD of the shape that is shown is asked for.
@@ -61,9 +76,19 @@ private:
     void learn();
     void fit_lift();
     void draw_lift();
+    /// N, of the table that the lift rests on, as it was last set in Tables.
+    [[nodiscard]] std::optional<double> net_weight() const;
+    void show_map();
+    void ask_map();
+    void draw_map();
+    /// Why there can be no map; empty when there can.
+    [[nodiscard]] QString no_map() const;
+    [[nodiscard]] std::string region_name() const;
+    [[nodiscard]] std::string map_key() const;
     void make_before();
     [[nodiscard]] std::string key_of(const geometry::BodyShape& shape) const;
     [[nodiscard]] geometry::Placement placement() const;
+    [[nodiscard]] bool dragging() const;
 
     struct Known {
         std::string key;
@@ -88,6 +113,10 @@ private:
     std::shared_ptr<const tables::ForceTable> table_;
     std::string table_of_;
     SessionPointer fitted_;
+    std::shared_ptr<const ShapeMap> map_;
+    std::string map_of_;     ///< what the map is, or will be, made of
+    SessionPointer mapped_;  ///< likewise
+    QTimer* map_rest_ = nullptr;
 
     std::unique_ptr<Scene> scene_;
     QComboBox* choice_ = nullptr;
@@ -99,8 +128,10 @@ private:
     QTableWidget* card_ = nullptr;
     QLabel* state_label_ = nullptr;
     QLabel* lift_label_ = nullptr;
+    QLabel* map_label_ = nullptr;
     PlotView* section_ = nullptr;
     PlotView* lift_plot_ = nullptr;
+    PlotView* map_plot_ = nullptr;
     QVBoxLayout* parameter_column_ = nullptr;
 };
 

@@ -174,6 +174,7 @@ void DesignPanel::show_lift() {
     } else if (table_) {
         draw_lift();
     }
+    show_map();
 }
 
 void DesignPanel::fit_lift() {
@@ -195,6 +196,14 @@ void DesignPanel::fit_lift() {
         true);
 }
 
+std::optional<double> DesignPanel::net_weight() const {
+    if (lift_.table == nullptr) {
+        return {};
+    }
+    const auto view = state().tables.find(lift_.table->name);
+    return view != state().tables.end() && view->second.net_weight ? view->second.net_weight : lift_.table->net_weight;
+}
+
 void DesignPanel::draw_lift() {
     core::Figure figure;
     if (lift_.basis == cases::KnownLift::Basis::surrogate) {
@@ -202,10 +211,7 @@ void DesignPanel::draw_lift() {
     } else if (lift_.table != nullptr && table_) {
         tables::FigureOptions options;
         options.axis = "gap";
-        const auto view = state().tables.find(lift_.table->name);
-        const auto weight =
-            view != state().tables.end() && view->second.net_weight ? view->second.net_weight : lift_.table->net_weight;
-        if (weight) {
+        if (const auto weight = net_weight()) {
             tables::EquilibriumOptions equilibria;
             equilibria.net_weight = *weight;
             equilibria.virtual_mass = lift_.table->virtual_mass;

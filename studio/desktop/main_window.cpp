@@ -35,6 +35,7 @@
 #include "studio/desktop/first_page.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/icon.h"
+#include "studio/desktop/input_guard.h"
 #include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
@@ -43,7 +44,6 @@
 #include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/desktop/theme.h"
-#include "studio/desktop/wheel_guard.h"
 
 namespace underbody::studio {
 
@@ -83,7 +83,7 @@ MainWindow::MainWindow(bool remember)
         return box.clickedButton() == button;
     };
     watcher_ = new QFileSystemWatcher(this);
-    new WheelGuard(this);
+    new InputGuard(this);
     build_workspaces();
     build_tree();
     build_below();

@@ -1,6 +1,7 @@
 #include "studio/desktop/parallel_view.h"
 
 #include <QEvent>
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
@@ -19,7 +20,11 @@ constexpr int bottom = 22, side = 60;
 
 ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
-    setToolTip("Drag along an axis to keep a range; click on the axis to take it away");
+    setAccessibleName("Lines over all columns");
+    setToolTip(
+        "Drag along an axis to keep a range; click on the axis to take it away.\nKeys: left and right choose an axis, "
+        "up "
+        "and down move the end of its range (with Shift the lower end), Delete takes it away.");
 }
 
 void ParallelView::say(const QString& text) {
@@ -29,6 +34,8 @@ void ParallelView::say(const QString& text) {
 
 void ParallelView::show_axes(std::vector<Axis> axes) {
     axes_ = std::move(axes);
+    chosen_ = std::min(chosen_, axes_.empty() ? 0 : axes_.size() - 1);
+    setFocusPolicy(axes_.empty() ? Qt::NoFocus : Qt::StrongFocus);
     for (auto& axis : axes_) {
         axis.lower = INFINITY;
         axis.upper = -INFINITY;
@@ -121,8 +128,10 @@ void ParallelView::paintEvent(QPaintEvent*) {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const Axis& axis = axes_[i];
         const double x = x_of(i);
-        painter.setPen(QPen(palette().text().color(), 1));
+        const bool chosen = hasFocus() && i == chosen_;
+        painter.setPen(chosen ? QPen(palette().highlight().color(), 3) : QPen(palette().text().color(), 1));
         painter.drawLine(QPointF(x, head_), QPointF(x, height() - bottom));
+        painter.setPen(QPen(palette().text().color(), 1));
         const double room = title_room();
         painter.drawText(QRectF(x - room / 2, 2, room, head_ - 26),
                          Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap, title_of(axis));
@@ -176,6 +185,34 @@ void ParallelView::changeEvent(QEvent* event) {
         update();
     }
     QWidget::changeEvent(event);
+}
+
+void ParallelView::move_end(bool upper, int by) {
+    const Axis& axis = axes_[chosen_];
+    const auto known = brush_.find(axis.name);
+    std::array<double, 2> range = known == brush_.end() ? std::array<double, 2>{axis.lower, axis.upper} : known->second;
+    double& end = range[upper ? 1 : 0];
+    constexpr double step = 0.05;  // of the axis
+    end = value_at(axis, y_of(axis, end) - by * step * std::max(1, height() - head_ - bottom));
+    if (range[0] < range[1]) {
+        Q_EMIT brushed(qt(axis.name), range[0], range[1]);
+    }
+}
+
+void ParallelView::keyPressEvent(QKeyEvent* event) {
+    const bool shift = (event->modifiers() & Qt::ShiftModifier) != 0;
+    const int key =
+        axes_.empty() || (event->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) != 0 ? 0 : event->key();
+    if (key == Qt::Key_Left || key == Qt::Key_Right) {
+        chosen_ = key == Qt::Key_Right ? std::min(chosen_ + 1, axes_.size() - 1) : chosen_ - (chosen_ > 0 ? 1 : 0);
+        update();
+    } else if (key == Qt::Key_Up || key == Qt::Key_Down) {
+        move_end(!shift, key == Qt::Key_Up ? 1 : -1);
+    } else if (key == Qt::Key_Delete || key == Qt::Key_Backspace) {
+        Q_EMIT brushed(qt(axes_[chosen_].name), 0, 0);
+    } else {
+        QWidget::keyPressEvent(event);
+    }
 }
 
 void ParallelView::mousePressEvent(QMouseEvent* event) {

@@ -1,4 +1,5 @@
-// Parallel coordinates: one axis a column, one line a case, ranges dragged on the axes.
+// Parallel coordinates: one axis a column, one line a case, ranges dragged on the axes. By keyboard: left and right
+// choose an axis, up and down move the upper end of its range, with Shift the lower one, Delete takes it away.
 #pragma once
 
 #include <QPixmap>
@@ -42,11 +43,13 @@ protected:
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
     void changeEvent(QEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
 
 private:
     [[nodiscard]] double x_of(std::size_t axis) const;
     [[nodiscard]] double y_of(const Axis& axis, double value) const;
     [[nodiscard]] double value_at(const Axis& axis, double y) const;
+    void move_end(bool upper, int by);
     void draw_line(QPainter& painter, std::size_t row) const;
     [[nodiscard]] static QString title_of(const Axis& axis);
     [[nodiscard]] double title_room() const;
@@ -59,6 +62,7 @@ private:
     QString empty_;
     int head_ = 60;  ///< px above the axes: titles and largest values
     int pressed_ = -1;
+    std::size_t chosen_ = 0;  ///< axis that keys act on
     double from_ = 0, to_ = 0;
 };
 

@@ -3,7 +3,11 @@
 #include <qcustomplot.h>
 
 #include <QBoxLayout>
+#include <QKeyEvent>
+#include <QPainter>
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "studio/figures/render.h"
 
@@ -74,22 +78,17 @@ void draw_dressed(const core::Figure& figure, QCustomPlot& plot, const QPalette&
 
 PlotView::PlotView(QWidget* parent) : QWidget(parent) {
     auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(0, 0, 0, 0);
+    column->setContentsMargins(1, 1, 1, 1);  // where the frame of the keyboard is drawn
     plot_ = new QCustomPlot(this);
+    plot_->setFocusPolicy(Qt::NoFocus);  // a click gives the keyboard to all of this
     column->addWidget(plot_);
     plot_->setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
     plot_->setMinimumSize(260, 200);
-    plot_->setToolTip("Wheel: zoom. Drag: move. Double click: show all.");
+    plot_->setToolTip(
+        "Wheel: zoom. Drag: move. Double click: show all.\nKeys: arrows (with Shift finely), Enter, + and -, Home.");
     connect(plot_, &QCustomPlot::mouseMove, this, [this](QMouseEvent* event) {
         if (shown_ && plot_->axisRect() != nullptr && plot_->axisRect()->rect().contains(event->pos())) {
-            const auto part = [](const core::FigureAxis& axis, double value) {
-                return QString("%1 %2 %3")
-                    .arg(QString::fromStdString(axis.label))
-                    .arg(value, 0, 'g', 4)
-                    .arg(QString::fromStdString(pretty_unit(axis.unit)));
-            };
-            Q_EMIT hovered(part(figure_.x, plot_->xAxis->pixelToCoord(event->pos().x())) + "   " +
-                           part(figure_.y, plot_->yAxis->pixelToCoord(event->pos().y())));
+            say_place(plot_->xAxis->pixelToCoord(event->pos().x()), plot_->yAxis->pixelToCoord(event->pos().y()));
         }
     });
     connect(plot_, &QCustomPlot::mousePress, this, [this](QMouseEvent* event) { pressed_ = event->pos(); });
@@ -105,19 +104,131 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
     connect(plot_, &QCustomPlot::mouseDoubleClick, this, [this] { show_all(); });
 }
 
+void PlotView::say_place(double x, double y) {
+    const auto part = [](const core::FigureAxis& axis, double value) {
+        return QString("%1 %2 %3")
+            .arg(QString::fromStdString(axis.label))
+            .arg(value, 0, 'g', 4)
+            .arg(QString::fromStdString(pretty_unit(axis.unit)));
+    };
+    Q_EMIT hovered(part(figure_.x, x) + "   " + part(figure_.y, y));
+}
+
 void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     const bool keep = keep_zoom && zoomed_ && shown_;
     const QCPRange x = keep ? plot_->xAxis->range() : QCPRange();
     const QCPRange y = keep ? plot_->yAxis->range() : QCPRange();
     figure_ = figure;
     shown_ = true;
+    setFocusPolicy(Qt::StrongFocus);
+    setAccessibleName(
+        QString::fromStdString(figure.title.empty() ? figure.y.label + " over " + figure.x.label : figure.title));
     draw_dressed(figure_, *plot_, palette());
     zoomed_ = keep;
     if (keep) {
         plot_->xAxis->setRange(x);
         plot_->yAxis->setRange(y);
     }
+    draw_mark();
     plot_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::draw_mark() {
+    if (!marked_ || !shown_) {
+        return;
+    }
+    if (tracer_ == nullptr) {
+        tracer_ = new QCPItemTracer(plot_);
+        tracer_->position->setType(QCPItemPosition::ptAxisRectRatio);
+        tracer_->setStyle(QCPItemTracer::tsCrosshair);
+        tracer_->setPen(QPen(palette().highlight().color(), 1.2));
+    }
+    tracer_->position->setAxisRect(plot_->axisRect());
+    tracer_->position->setCoords(mark_.x(), 1 - mark_.y());
+}
+
+namespace {
+
+/// The value at a share of an axis: the box of a figure that was just drawn has no pixels yet.
+double value_at(const QCPAxis& axis, double share) {
+    const QCPRange range = axis.range();
+    return axis.scaleType() == QCPAxis::stLogarithmic ? range.lower * std::pow(range.upper / range.lower, share)
+                                                      : range.lower + share * range.size();
+}
+
+}  // namespace
+
+void PlotView::move_mark(double right, double up) {
+    if (marked_) {  // the first key shows where it stands
+        mark_ = {std::clamp(mark_.x() + right, 0.0, 1.0), std::clamp(mark_.y() + up, 0.0, 1.0)};
+    }
+    marked_ = true;
+    draw_mark();
+    plot_->replot(QCustomPlot::rpQueuedReplot);
+    say_place(value_at(*plot_->xAxis, mark_.x()), value_at(*plot_->yAxis, mark_.y()));
+}
+
+void PlotView::zoom(double factor) {
+    plot_->xAxis->scaleRange(factor, value_at(*plot_->xAxis, mark_.x()));
+    plot_->yAxis->scaleRange(factor, value_at(*plot_->yAxis, mark_.y()));
+    zoomed_ = true;
+    plot_->replot(QCustomPlot::rpQueuedReplot);
+}
+
+void PlotView::keyPressEvent(QKeyEvent* event) {
+    if (!shown_ || (event->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) != 0) {
+        QWidget::keyPressEvent(event);
+        return;
+    }
+    const double step = (event->modifiers() & Qt::ShiftModifier) != 0 ? 0.002 : 0.02;
+    switch (event->key()) {
+        case Qt::Key_Left:
+            return move_mark(-step, 0);
+        case Qt::Key_Right:
+            return move_mark(step, 0);
+        case Qt::Key_Up:
+            return move_mark(0, step);
+        case Qt::Key_Down:
+            return move_mark(0, -step);
+        case Qt::Key_Plus:
+        case Qt::Key_Equal:
+            return zoom(0.8);
+        case Qt::Key_Minus:
+            return zoom(1 / 0.8);
+        case Qt::Key_Home:
+            return show_all();
+        case Qt::Key_Return:
+        case Qt::Key_Enter:
+            if (marked_) {
+                Q_EMIT clicked(value_at(*plot_->xAxis, mark_.x()), value_at(*plot_->yAxis, mark_.y()));
+            }
+            return;
+        default:
+            QWidget::keyPressEvent(event);
+    }
+}
+
+void PlotView::focusInEvent(QFocusEvent* event) {
+    QWidget::focusInEvent(event);
+    update();
+}
+
+/// The mark is the keyboard's: it goes with it.
+void PlotView::focusOutEvent(QFocusEvent* event) {
+    QWidget::focusOutEvent(event);
+    if (std::exchange(marked_, false) && tracer_ != nullptr) {
+        plot_->removeItem(tracer_);
+        plot_->replot(QCustomPlot::rpQueuedReplot);
+    }
+    update();
+}
+
+void PlotView::paintEvent(QPaintEvent*) {
+    if (hasFocus()) {
+        QPainter painter(this);
+        painter.setPen(palette().highlight().color());
+        painter.drawRect(rect().adjusted(0, 0, -1, -1));
+    }
 }
 
 namespace {
@@ -139,6 +250,8 @@ QString in_lines(const QString& text) {
 
 void PlotView::show_text(const QString& text) {
     sentence_ = text;
+    setFocusPolicy(Qt::NoFocus);  // there is nothing to do here
+    setAccessibleName(text);
     show_sentence();
 }
 
@@ -180,6 +293,7 @@ void PlotView::show_all() {
     if (shown_) {
         zoomed_ = false;
         draw_dressed(figure_, *plot_, palette());
+        draw_mark();
         plot_->replot(QCustomPlot::rpQueuedReplot);
     }
 }

@@ -1,12 +1,15 @@
-// A figure in the window: wheel zooms, drag moves, a double click shows all again, the mouse reads coordinates.
+// A figure in the window: wheel zooms, drag moves, a double click shows all again, the mouse reads coordinates. By
+// keyboard: arrows move a mark that reads them, Enter is a click there, + and - zoom about it, Home shows all.
 #pragma once
 
+#include <QPointer>
 #include <QWidget>
 #include <filesystem>
 #include <functional>
 
 #include "core/figure.h"
 
+class QCPItemTracer;
 class QCustomPlot;
 
 namespace underbody::studio {
@@ -20,6 +23,9 @@ public:
     void show_figure(const core::Figure& figure, bool keep_zoom = false);
     void show_text(const QString& text);
     [[nodiscard]] bool has_figure() const { return shown_; }
+    [[nodiscard]] const core::Figure& figure() const { return figure_; }
+    /// What stands in the place of a figure.
+    [[nodiscard]] QString sentence() const { return shown_ ? QString() : sentence_; }
     /// The least room that it asks for, px.
     void set_least(const QSize& size);
     /// As drawn in a file, by the ending.
@@ -33,9 +39,18 @@ Q_SIGNALS:
 
 protected:
     void changeEvent(QEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void focusInEvent(QFocusEvent* event) override;
+    void focusOutEvent(QFocusEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
 
 private:
     void show_sentence();
+    void say_place(double x, double y);
+    void move_mark(double right, double up);
+    void zoom(double factor);
+    /// Anew with every figure, which takes all items away.
+    void draw_mark();
     void show_all();
     QCustomPlot* plot_ = nullptr;
     core::Figure figure_;
@@ -43,6 +58,9 @@ private:
     bool shown_ = false;
     bool zoomed_ = false;
     QPoint pressed_;
+    QPointF mark_{0.5, 0.5};  ///< share of the axes' box, from its lower left corner
+    bool marked_ = false;
+    QPointer<QCPItemTracer> tracer_;
 };
 
 }  // namespace underbody::studio

@@ -1,0 +1,18 @@
+// What the wheel and Tab do in the whole window. The wheel rolls the list that it is over: it changes a value only
+// where the value has the keyboard. Tab leaves every input: tables and texts keep it for themselves otherwise.
+#pragma once
+
+#include <QObject>
+
+namespace underbody::studio {
+
+class InputGuard : public QObject {
+public:
+    /// Watches the whole program for as long as it lives.
+    explicit InputGuard(QObject* parent);
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+};
+
+}  // namespace underbody::studio

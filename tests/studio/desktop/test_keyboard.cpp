@@ -1,0 +1,158 @@
+// Every workspace by keyboard alone: Tab comes to whatever can be done, and leaves it again.
+#include <gtest/gtest.h>
+
+#include <QAbstractButton>
+#include <QAbstractItemView>
+#include <QAbstractSpinBox>
+#include <QComboBox>
+#include <QHeaderView>
+#include <QLineEdit>
+#include <QSignalSpy>
+#include <QSlider>
+#include <QTabBar>
+#include <QTest>
+#include <QToolBar>
+#include <set>
+
+#include "studio/desktop/explore_panel.h"
+#include "studio/desktop/parallel_view.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/region_panel.h"
+#include "tests/studio/desktop/window_fixture.h"
+
+namespace underbody::studio {
+namespace {
+
+/// Something that people do things with, whatever its focus policy says. What a larger input is made of is not asked
+/// for; nor are the bar of workspaces (F2 to F8) and the docks' buttons (F9, Ctrl+F9), which have keys of their own.
+bool is_input(const QWidget& widget) {
+    if (!widget.isVisible() || !widget.isEnabled()) {
+        return false;
+    }
+    const QWidget* parent = widget.parentWidget();
+    const auto within = [&](const char* of) { return parent != nullptr && parent->inherits(of); };
+    if (within("QComboBox") || within("QAbstractSpinBox") || within("QLineEdit") || within("QTabBar") ||
+        within("QToolBar") || within("QDockWidget") || within("QAbstractItemView") || within("QMenuBar") ||
+        within("QStatusBar") || widget.inherits("QHeaderView")) {
+        return false;
+    }
+    if (const auto* plot = qobject_cast<const PlotView*>(&widget)) {
+        return plot->has_figure();
+    }
+    for (const char* kind : {"QSlider", "QLineEdit", "QAbstractButton", "QComboBox", "QAbstractItemView",
+                             "QAbstractSpinBox", "QPlainTextEdit", "QTextEdit"}) {
+        if (widget.inherits(kind)) {
+            return true;
+        }
+    }
+    return qobject_cast<const ParallelView*>(&widget) != nullptr;
+}
+
+std::string name_of(const QWidget* widget) {
+    if (widget == nullptr) {
+        return "nothing";
+    }
+    QString path;
+    for (const QWidget* one = widget; one != nullptr && !one->isWindow(); one = one->parentWidget()) {
+        path = one->metaObject()->className() + QString(one->objectName().isEmpty() ? "" : " ") + one->objectName() +
+               (path.isEmpty() ? "" : " > ") + path;
+    }
+    const auto* button = qobject_cast<const QAbstractButton*>(widget);
+    return (path + " '" + widget->accessibleName() + (button != nullptr ? button->text() : QString()) + "'")
+        .toStdString();
+}
+
+/// The widgets that Tab (or Shift+Tab) comes to until one comes again.
+std::vector<QWidget*> walk(QMainWindow& window, Qt::KeyboardModifiers modifiers) {
+    std::vector<QWidget*> way;
+    std::set<QWidget*> seen;
+    QApplication::setActiveWindow(&window);
+    window.setFocus();
+    for (int i = 0; i < 1000; ++i) {
+        QTest::keyClick(QApplication::focusWidget() != nullptr ? QApplication::focusWidget() : &window,
+                        modifiers == Qt::ShiftModifier ? Qt::Key_Backtab : Qt::Key_Tab, modifiers);
+        QWidget* now = QApplication::focusWidget();
+        if (now == nullptr || !seen.insert(now).second) {
+            EXPECT_TRUE(now != nullptr && now == way.front())
+                << "stuck at " << name_of(now) << " after " << way.size() << " steps";
+            return way;
+        }
+        way.push_back(now);
+    }
+    ADD_FAILURE() << "Tab comes round to no widget again";
+    return way;
+}
+
+TEST_F(Window, EveryInputIsReachedByTab) {
+    open(computed_study());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    for (const auto& workspace : workspace_names()) {
+        SCOPED_TRACE(workspace);
+        act("workspace " + workspace);
+        settle(*window_);
+        for (const auto modifiers : {Qt::KeyboardModifiers(Qt::NoModifier), Qt::KeyboardModifiers(Qt::ShiftModifier)}) {
+            const std::vector<QWidget*> way = walk(*window_, modifiers);
+            settle(*window_);
+            EXPECT_GE(way.size(), 5U);
+            for (auto* widget : window_->findChildren<QWidget*>()) {
+                if (!is_input(*widget)) {
+                    continue;
+                }
+                const QWidget* proxy = widget->focusProxy() != nullptr ? widget->focusProxy() : widget;
+                EXPECT_TRUE(std::find(way.begin(), way.end(), proxy) != way.end())
+                    << (modifiers == Qt::ShiftModifier ? "backwards: " : "") << name_of(widget)
+                    << " is not come to (focus policy " << widget->focusPolicy() << ")";
+            }
+        }
+        EXPECT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
+    }
+}
+
+// What the mouse does on a plot, keys do too.
+TEST_F(Window, AStartIsChosenByKeyboard) {
+    open(computed_study());
+    act("workspace stability");
+    act("region glide cells=20");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    PlotView* map = nullptr;
+    for (auto* plot : stability.findChildren<PlotView*>()) {
+        map = plot->has_figure() && !plot->figure().classes.empty() ? plot : map;
+    }
+    ASSERT_NE(map, nullptr);
+    QSignalSpy said(map, &PlotView::hovered);
+    map->setFocus();
+    QTest::keyClick(map, Qt::Key_Right);
+    QTest::keyClick(map, Qt::Key_Right);
+    EXPECT_EQ(said.count(), 2) << "where the mark stands is said as under the mouse";
+    QTest::keyClick(map, Qt::Key_Return);
+    const auto start = window_->desk().state().regions.at("glide").start;
+    ASSERT_TRUE(start);
+    EXPECT_NEAR((*start)[1], 0, 1e-9) << "in the middle between -60 and 60 mm/s";
+    EXPECT_GT((*start)[0], 0.002);
+    settle(*window_);
+    EXPECT_TRUE(stability.trajectory());
+    window_->desk().undo();
+    EXPECT_FALSE(window_->desk().state().regions.at("glide").start);
+}
+
+TEST_F(Window, ARangeIsKeptByKeyboard) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    auto& explore = panel<ExplorePanel>();
+    auto* lines = explore.findChild<ParallelView*>();
+    ASSERT_EQ(explore.kept().size(), 5U);
+    lines->setFocus();
+    QTest::keyClick(lines, Qt::Key_Down);
+    ASSERT_EQ(window_->desk().state().explore.brush.size(), 1U);
+    EXPECT_EQ(explore.kept().size(), 4U) << "the largest is out";
+    QTest::keyClick(lines, Qt::Key_Up, Qt::ShiftModifier);
+    EXPECT_EQ(explore.kept().size(), 3U) << "and the smallest";
+    QTest::keyClick(lines, Qt::Key_Delete);
+    EXPECT_TRUE(window_->desk().state().explore.brush.empty());
+    EXPECT_EQ(explore.kept().size(), 5U);
+}
+
+}  // namespace
+}  // namespace underbody::studio
