@@ -22,6 +22,7 @@
 #include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/side_by_side.h"
 
 namespace underbody::studio {
 
@@ -64,13 +65,11 @@ void DesignPanel::build() {
     }
     section_ = new PlotView(this);
     upper->addWidget(section_);
-    auto* lower = new QSplitter(Qt::Horizontal);
     lift_plot_ = new PlotView(this);
     map_plot_ = new PlotView(this);
-    lower->addWidget(lift_plot_);
-    lower->addWidget(map_plot_);
+    constexpr int room = 800;  // px: narrower ones are all legend
     views->addWidget(upper);
-    views->addWidget(lower);
+    views->addWidget(new SideBySide(lift_plot_, "Lift", map_plot_, "Stability map", room));
     views->setStretchFactor(0, 3);
     views->setStretchFactor(1, 2);
     auto* side = new QWidget;

@@ -9,13 +9,16 @@
 
 #include <QElapsedTimer>
 #include <QLabel>
+#include <QTabBar>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
 
 #include "cases/design.h"
 #include "core/text.h"
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/plot_view.h"
+#include "studio/desktop/qt_text.h"
 #include "tests/studio/desktop/window_fixture.h"
 
 namespace underbody::studio {
@@ -181,6 +184,32 @@ TEST_F(DesignMap, FollowsTheShapeByTheSearchsSurrogate) {
     };
     EXPECT_NEAR(ends_at("set body.base_cut=0.7"), truth(0.7), 0.6e-3) << "1.9 mm apart, three gaps computed";
     EXPECT_NEAR(ends_at("set body.base_cut=0.8"), truth(0.8), 0.6e-3);
+}
+
+// A narrow window shows one of the two, a wide one both.
+TEST_F(DesignMap, StandsBesideTheLiftWhereThereIsRoom) {
+    show(computed_study());
+    QTabBar* tabs = nullptr;
+    for (auto* one : design().findChildren<QTabBar*>()) {
+        tabs = one->count() == 2 && one->tabText(1) == "Stability map" ? one : tabs;
+    }
+    ASSERT_NE(tabs, nullptr);
+    const auto* map = design().map_plot();
+    EXPECT_TRUE(tabs->isVisible());
+    EXPECT_FALSE(map->isVisible());
+    tabs->setCurrentIndex(1);
+    EXPECT_TRUE(map->isVisible());
+    EXPECT_GT(map->width(), 350);
+    window_->resize(1900, 900);
+    settle(*window_);
+    EXPECT_FALSE(tabs->isVisible());
+    EXPECT_TRUE(map->isVisible());
+    tabs->setCurrentIndex(0);
+    EXPECT_TRUE(map->isVisible());
+    const char* keep = std::getenv("UNDERBODY_KEEP_PICTURES");
+    if (keep != nullptr) {
+        window_->grab().save(qt((fs::path(keep) / "design-wide.png").string()));
+    }
 }
 
 // From the last move of a hand to the map on the screen, in processor time of all threads.
