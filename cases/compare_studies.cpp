@@ -86,6 +86,14 @@ public:
     StudyComparison run() {
         result_.a = a_.name;
         result_.b = b_.name;
+        for (const Campaign* side : {&a_, &b_}) {
+            if (!side->where.label().empty() && members_of(*side).empty()) {
+                throw core::InputError("missing",
+                                       "no case of '" + side->name + "' that has loads has " + side->where.label(),
+                                       {side->study->folder().string(), {}, {}, {}},
+                                       "study list shows the conditions of the cases; a number without a unit is SI");
+            }
+        }
         compare_loads();
         if (a_.results != b_.results) {  // tables and maps of one study are the same
             compare_tables();

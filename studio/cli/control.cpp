@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -17,6 +18,7 @@
 #include "studio/cli/shell.h"
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/estimator/control/loop_region.h"
 #include "surrogates/tables/exports/export.h"
 
@@ -168,6 +170,9 @@ void check(const ControlArguments& a, const SeparatedPlant& plant, const Control
     if (o.gap < plant.contact_gap) {
         throw core::InputError("range", "the start lies inside the ground");
     }
+    if (!(law.limit > 0)) {
+        throw core::UsageError("range", "--limit " + a.limit + " is no largest force: it is to be above 0");
+    }
     if (law.gap_gain <= 0 || law.velocity_gain <= 0) {
         throw core::UsageError("range", "the poles of the loop must lie left of zero");
     }
@@ -231,6 +236,21 @@ int run_compare(const ControlArguments& a, const SeparatedPlant& plant, const Co
     return ExitCode::done;
 }
 
+/// What is said of gaps that the tables do not cover, each once.
+std::vector<std::string> show_gaps_outside(Shell& shell, const dynamics::Model& model, dynamics::Conditions held,
+                                           const std::set<double>& gaps) {
+    std::vector<std::string> said;
+    for (const double gap : gaps) {
+        held[dynamics::Channel::gap] = gap;
+        const core::Problems outside = dynamics::held_outside(model, held);
+        shell.show(outside);
+        for (const core::Problem& problem : outside) {
+            said.push_back(problem.message);
+        }
+    }
+    return said;
+}
+
 int run_control(const ControlArguments& a, Shell& shell) {
     for (const std::string& file : {a.out, a.plot, a.region, a.export_c}) {
         Shell::will_write(file);
@@ -241,13 +261,15 @@ int run_control(const ControlArguments& a, Shell& shell) {
          a.conditions.empty() ? std::vector<core::NamedValue>{} : core::parse_assignments(a.conditions)) {
         held.set(v.name, v.value);
     }
-    const std::vector<std::string> warnings = show_table_warnings(shell, model, held);
+    std::vector<std::string> warnings = show_table_warnings(shell, model, held);
     const SeparatedPlant plant = separate(model, held);
     shell.show(plant.remarks);
     ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
     law.limit = quantity("--limit", a.limit, "N", INFINITY);
     const LoopOptions o = loop_options(a, law.reference_gap);
     check(a, plant, law, o, shell);
+    const std::vector<std::string> outside = show_gaps_outside(shell, model, held, {law.reference_gap, o.gap});
+    warnings.insert(warnings.end(), outside.begin(), outside.end());
     if (a.compare) {
         return run_compare(a, plant, law, o, warnings, shell);
     }

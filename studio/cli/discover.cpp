@@ -8,6 +8,7 @@
 #include "cases/measured/studies.h"
 #include "core/own_files.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
@@ -82,9 +83,10 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     text += missing ? "" : limits_text(found);
     for (const discovery::ErrorChange& change : found.error) {
         text += "\nError of " + change.channel + horizon_text(change) + discovery::error_is_on(found) + ": " +
-                core::format_number(change.before.rmse, 3) +
-                (missing ? " -> " + core::format_number(change.after.rmse, 3) : "") + " " + change.unit + " (noise " +
-                core::format_number(change.noise, 3) + ")";
+                (missing ? core::told(change.before.rmse, change.unit, 3) + " -> " +
+                               core::told(change.after.rmse, change.unit, 3)
+                         : core::told(change.before.rmse, change.unit, 3)) +
+                " (noise " + core::told(change.noise, change.unit, 3) + ")";
     }
     for (const discovery::AxisResidual& axis : found.axes) {
         text += "\nThe model lacks of " + axis.quantity + ": " + core::format_number(axis.rms_before, 3) + " " +
@@ -93,9 +95,10 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
                 core::format_number(axis.sigma, 2) + " " + axis.unit;
     }
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
-    text += missing
-                ? "New model: " + (folder / "model.toml").string() + " (simulate, predict, region and export take it)\n"
-                : "";
+    text += missing ? "New model: " + (folder / "model.toml").string() +
+                          (found.motion == "surface" ? " (predict and linear take it)\n"
+                                                     : " (simulate, predict, region and export take it)\n")
+                    : "";
     text += "Report: " + (folder / "report.html").string() + "\n";
     shell.print(text);
 }

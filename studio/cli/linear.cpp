@@ -366,7 +366,8 @@ void surface(const dynamics::Model& model, const dynamics::Conditions& held, con
     for (std::size_t k = 0; k < thrust.size(); ++k) {
         one["trim_thrust"][model.jets[k].name] = thrust[k];
     }
-    text += "on the ground at " + core::format_number(speed, 4) + " m/s, normal force " +
+    text += "on the ground at " + core::format_number(speed, 4) + " m/s" +
+            (held.has(dynamics::Channel::speed) ? "" : " (no speed is given: this one is taken)") + ", normal force " +
             core::format_number(normal, 3) + " N, friction " + core::format_number(friction, 3) + " N (" + trim + ")\n";
     for (const dynamics::Mode& mode : modes) {
         text += mode_text(mode);

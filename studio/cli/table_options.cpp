@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/caller.h"
 #include "studio/cli/option_value.h"
@@ -316,7 +317,8 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
 std::string shown(const tables::ForceTable& table, const std::string& quantity, const std::string& si, double value,
                   int digits) {
     const std::string unit = tables::shown_unit(table, quantity);
-    return core::format_number(core::convert(value, si, unit), digits) + " " + unit;
+    return unit == si ? core::told(value, si, digits)
+                      : core::format_number(core::convert(value, si, unit), digits) + " " + unit;
 }
 
 std::vector<std::pair<std::string, double>> read_assignments(const std::string& text) {

@@ -134,7 +134,7 @@ public:
         std::string text = seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
                            core::counted(readings_, "reading") + ", " + seconds(watched_) + " of them judged; " +
                            (nothing        ? "nothing was judged: the noise was still being learned"
-                            : alarms_ == 0 ? "the vehicle was the model all the time"
+                            : alarms_ == 0 ? "the gap followed the model all the time"
                                            : alarms);
         if (passed_over_ > 0) {
             text += "; " + core::counted(passed_over_, "reading") + " whose time did not ascend " +

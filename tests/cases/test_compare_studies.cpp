@@ -231,7 +231,7 @@ TEST_F(CompareStudies, MeshesOfOneStudyAndOtherMeshesOfAnotherBelongTogether) {
         (void)compare(one, one, coarse, none);
         ADD_FAILURE() << "nothing to compare";
     } catch (const core::InputError& error) {
-        EXPECT_THAT(error.message(), HasSubstr("no case, table or map in common"));
+        EXPECT_THAT(error.message(), HasSubstr("no case of 'b' that has loads has finest"));
     }
 }
 

@@ -116,6 +116,10 @@ TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
                                   folder())
                   .exit_code,
               2);
+    EXPECT_EQ(
+        test::run_underbody({"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--limit", "-1"}, folder())
+            .exit_code,
+        2);
     const auto all = test::run_underbody(
         {"control", "model.toml", "--hold", "0.6", "--from", "gap=0.5", "--for", "40 s", "--compare", "--json"},
         folder());

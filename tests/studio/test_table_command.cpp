@@ -227,7 +227,7 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     // With a gap there are windows at it too, and the picture is theirs.
     const auto both = pitch({"--held", "speed=2,gap=500mm", "--weight", "4", "--picture", "moment.png"});
     EXPECT_THAT(both.output, HasSubstr("restores from"));
-    EXPECT_THAT(both.output, HasSubstr("balance of heave and pitch at gap 0.5 m +- "));
+    EXPECT_THAT(both.output, HasSubstr("balance of heave and pitch at gap 500 mm +- "));
     EXPECT_THAT(both.output, HasSubstr("without --mass and --inertia"));
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "moment.png"));
     // Where nothing balances, what torque would: at v = 2 lift holds 4 N on h - 0.5 = 1.5 p, with the moment -0.2 p v^2

@@ -292,7 +292,9 @@ StartEnds ends_of_starts(const Model& model, const core::Table& starts, const Re
     result.table.add_text("kind", kinds);
     result.table.add_numbers("time", "s", times);
     result.table.add_numbers(outside_table_column, "1", outside);
-    const double share = outside.empty() ? 0 : std::accumulate(outside.begin(), outside.end(), 0.0) / outside.size();
+    const double share =
+        outside.empty() ? 0
+                        : std::accumulate(outside.begin(), outside.end(), 0.0) / static_cast<double>(outside.size());
     add_path_remark(result.remarks, share, found.range);
     return result;
 }

@@ -343,7 +343,12 @@ Model read(const core::TomlTable& root, std::string_view text) {
         model.forces.push_back(read_force(table, model.remarks));
     }
     for (const core::TomlTable& table : root.tables("jet")) {
-        model.jets.push_back(read_jet(table));
+        Jet jet = read_jet(table);
+        if (std::any_of(model.jets.begin(), model.jets.end(), [&](const Jet& one) { return one.name == jet.name; })) {
+            throw core::InputError("name", "two jets are called '" + jet.name + "'", table.place("name"),
+                                   "give each a name of its own: thrusts and voltages are named after it");
+        }
+        model.jets.push_back(std::move(jet));
     }
     for (const core::TomlTable& table : root.tables("effect")) {
         model.effects.push_back(read_effect(model, table));

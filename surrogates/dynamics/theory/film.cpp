@@ -76,6 +76,7 @@ SliderFilm slider_film(const std::function<double(double)>& gap, double length, 
     constexpr double no_load = 1e-9;
     const double size = (film.highest - film.lowest) * length;
     film.centre_of_pressure = std::abs(load) > no_load * size ? moment / load : std::nan("");
+    widest = std::max({widest, gap(0), gap(length)});
     film.reduced_reynolds = std::abs(speed) * widest * widest * density / (viscosity * length);
     film.valid = film.reduced_reynolds <= 1;
     return film;
@@ -100,6 +101,9 @@ double plane_slider_pressure(double gap, double inlet, double outlet, double len
 }
 
 double plane_slider_peak(double inlet, double outlet, double length, double speed, double viscosity) {
+    if (inlet == outlet) {
+        return 0;  // parallel plates make no pressure
+    }
     return plane_slider_pressure(2 * inlet * outlet / (inlet + outlet), inlet, outlet, length, speed, viscosity);
 }
 

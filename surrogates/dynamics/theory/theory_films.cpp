@@ -52,7 +52,8 @@ Result slider(const Values& v) {
     const double ratio = best_slider_ratio();
     return {{{"load_per_width", "N/m", plane_slider_load(inlet, outlet, length, u, mu), "up, per metre of width"},
              {"peak_pressure", "Pa", plane_slider_peak(inlet, outlet, length, u, mu),
-              "highest, where the gap is 2 hi ho/(hi + ho)"},
+              inlet >= outlet ? "highest, where the gap is 2 hi ho/(hi + ho)"
+                              : "lowest, where the gap is 2 hi ho/(hi + ho)"},
              {"outlet_pressure", "Pa", film.pressure.back(), "ambient: 0"},
              {"centre_of_pressure", "m", film.centre_of_pressure, "from the inlet"},
              {"centre_of_pressure_share", "1", film.centre_of_pressure / length, "of the length"},

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "core/told.h"
 
 namespace underbody::tables {
 
@@ -54,8 +55,8 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
                 if (std::abs(value - constant) > 1e-9 * std::max(std::abs(value), std::abs(constant))) {
                     throw core::UsageError(
                         "axis",
-                        "the table holds for " + name + " " + core::format_number(constant, 6) + " only, not " +
-                            core::format_number(value, 6),
+                        "the table holds for " + core::told_condition(name, constant) + " only, not for " +
+                            core::told_condition(name, value),
                         {table.source(), {}, {}, {}},
                         "take points at several values of " + name + ", or scale the force by a law");
                 }
@@ -73,10 +74,10 @@ std::vector<double> held_point(const ForceTable& table, std::optional<std::size_
         } else if (std::isnan(point[k])) {
             const bool level = axes[k].name == "pitch" && axes[k].lower <= 0 && axes[k].upper >= 0;
             if (!level) {
-                throw core::UsageError("axis", "the table has an axis '" + axes[k].name + "' whose value is not given",
-                                       {table.source(), {}, {}, {}},
-                                       "say " + axes[k].name + "=VALUE, " + core::format_number(axes[k].lower, 6) +
-                                           " to " + core::format_number(axes[k].upper, 6) + " " + axes[k].unit);
+                throw core::UsageError(
+                    "axis", "the table has an axis '" + axes[k].name + "' whose value is not given",
+                    {table.source(), {}, {}, {}},
+                    "say " + axes[k].name + "=VALUE, " + core::told_range(axes[k].lower, axes[k].upper, axes[k].unit));
             }
             point[k] = 0;
             if (remarks != nullptr) {

@@ -207,6 +207,10 @@ TEST(Oracles, RegulatorOfTheVerticalChannel) {  // O20
 TEST(Oracles, SliderFilms) {  // O21 ... O28
     EXPECT_NEAR(plane_slider_load(2e-3, 1e-3, .05, .5, 1e-3), 0.1986038542, 1e-9);
     EXPECT_NEAR(plane_slider_peak(2e-3, 1e-3, .05, .5, 1e-3), 6.25, 1e-12);
+    EXPECT_EQ(plane_slider_peak(1e-3, 1e-3, .05, .5, 1e-3), 0);
+    // The widest place of a film that widens is its end.
+    EXPECT_NEAR(slider_film([](double x) { return 1e-3 + 1e-3 * x / .05; }, .05, {}, .5, 1e-3, 1000).reduced_reynolds,
+                .5 * 2e-3 * 2e-3 * 1000 / (1e-3 * .05), 1e-9);
     EXPECT_NEAR(best_slider_ratio(), 2.1887048, 1e-7);
     EXPECT_NEAR(slider_load_coefficient(best_slider_ratio()), 0.16024314, 1e-8);
     const SliderFilm plane = slider_film([](double x) { return 2e-3 - 1e-3 * x / .05; }, .05, {}, .5, 1e-3, 1000);

@@ -18,6 +18,13 @@ Model rig() {
         "rig.toml", ".");
 }
 
+TEST(SurfaceRig, TwoJetsOfOneNameAreRefused) {
+    const std::string jet = "[[jet]]\nname = \"port\"\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\nmaximum = 1\n";
+    EXPECT_NO_THROW((void)read_model_text("[vehicle]\nmass = 2\nnet_weight = 1\n" + jet, "rig.toml", "."));
+    EXPECT_THROW((void)read_model_text("[vehicle]\nmass = 2\nnet_weight = 1\n" + jet + jet, "rig.toml", "."),
+                 core::InputError);
+}
+
 /// Forces along and across the body and yaw moment that an effect adds, at a moment.
 std::array<double, 3> added(const EffectUse& use, const SurfaceState& y) {
     const std::vector<double> thrust{0.4, 0.1};
