@@ -111,6 +111,7 @@ public:
         } else if (quantity == "gap") {
             gap(time, value);
         } else {
+            pitch_too_ = pitch_too_ || quantity == "pitch";
             watch_->condition(quantity, value);
         }
     }
@@ -136,6 +137,7 @@ public:
                            (nothing        ? "nothing was judged: the noise was still being learned"
                             : alarms_ == 0 ? "the gap followed the model all the time"
                                            : alarms);
+        text += pitch_too_ ? "; the pitch was taken as measured, whether it follows the model is not watched" : "";
         if (passed_over_ > 0) {
             text += "; " + core::counted(passed_over_, "reading") + " whose time did not ascend " +
                     (passed_over_ == 1 ? "was" : "were") + " passed over";
@@ -301,6 +303,7 @@ private:
     discovery::WatchOptions options_;
     double after_ = 60, last_ = 0, alarmed_since_ = 0, silent_until_ = -1e300, watched_ = 0;
     std::size_t readings_ = 0, passed_over_ = 0;
+    bool pitch_too_ = false;  ///< the log has it
     bool live_ = false;
     std::unique_ptr<discovery::Watch> watch_;
     std::optional<discovery::WatchAlarm> alarm_;
@@ -326,7 +329,14 @@ private:
 void need_gap(const dynamics::LogChannels& channels, const std::string& name, const std::string& hint) {
     if (std::none_of(channels.channels.begin(), channels.channels.end(),
                      [](const dynamics::LogChannel& one) { return one.quantity == "gap"; })) {
-        throw core::InputError("missing", "nothing says which number is the gap", {name, {}, {}, {}}, hint);
+        const bool ground = std::any_of(channels.channels.begin(), channels.channels.end(), [](const auto& one) {
+            return one.quantity == "position_x" || one.quantity == "position_y";
+        });
+        throw core::InputError(
+            "missing", "nothing says which number is the gap", {name, {}, {}, {}},
+            ground ? "a run on the ground is not watched, only the gap of a body that glides: discover and "
+                     "predict follow it"
+                   : hint);
     }
 }
 
