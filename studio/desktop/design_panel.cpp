@@ -2,6 +2,7 @@
 
 #include <QBoxLayout>
 #include <QComboBox>
+#include <QEvent>
 #include <QHeaderView>
 #include <QInputDialog>
 #include <QLabel>
@@ -56,6 +57,7 @@ void DesignPanel::build() {
     if (Scene::possible()) {
         scene_ = std::make_unique<Scene>(this);
         scene_->widget()->setMinimumSize(200, 160);
+        scene_->widget()->installEventFilter(this);
         scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
         upper->addWidget(scene_->widget());
     } else {
@@ -416,8 +418,9 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
         scene_->set_ground(palette().base().color().lightness() < 128);
         scene_->show(body->drawn, first);
         scene_->colour_by({}, {0, 1});
-        if (first) {
-            scene_->look_from("iso", "+x", "+z");
+        if (!fitted_view_ && !turned_) {  // the first ones come while the window still gives everything its place
+            fit_view();
+            fitted_view_ = body->certificate.has_value();
         }
         scene_->render();
     }
@@ -426,6 +429,23 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
     if (body->certificate && !body->added_mass && body->contact.empty() && !jobs_.busy("design rest")) {
         rest_->start();  // its added mass was interrupted
     }
+}
+
+void DesignPanel::fit_view() { scene_->look_from("iso", "+x", "+z"); }
+
+/// A view that nobody has turned shows the body as large as its place lets it.
+bool DesignPanel::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::MouseButtonPress || event->type() == QEvent::Wheel) {
+        turned_ = turned_ || (scene_ && watched == scene_->widget());
+    } else if (event->type() == QEvent::Resize && !turned_ && shown_) {
+        QTimer::singleShot(0, this, [this] {
+            if (!turned_) {
+                fit_view();
+                scene_->render();
+            }
+        });
+    }
+    return Panel::eventFilter(watched, event);
 }
 
 void DesignPanel::export_picture(const std::filesystem::path& path) { section_->write(path); }

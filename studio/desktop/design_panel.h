@@ -58,6 +58,7 @@ Q_SIGNALS:
 
 protected:
     void draw_again(bool session) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
     void build();
@@ -71,6 +72,7 @@ private:
     void ask_added_mass(const std::shared_ptr<const LiveBody>& body, const std::string& key);
     void take(const std::shared_ptr<const LiveBody>& body, const std::string& key);
     void show_body(const std::shared_ptr<const LiveBody>& body);
+    void fit_view();
     void show_card();
     void show_lift();
     void learn();
@@ -119,6 +121,8 @@ private:
     QTimer* map_rest_ = nullptr;
 
     std::unique_ptr<Scene> scene_;
+    bool fitted_view_ = false;  ///< to a whole body
+    bool turned_ = false;       ///< by hand: the camera is not fitted any more
     QComboBox* choice_ = nullptr;
     std::vector<std::pair<std::string, ParameterRow*>> rows_;
     std::vector<std::pair<std::string, QComboBox*>> words_;
