@@ -221,7 +221,8 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     EXPECT_NEAR(e["gap"].get<double>(), 0.65, 1e-6);
     EXPECT_NEAR(e["pitch"].get<double>(), 0.1, 1e-6);
     EXPECT_NEAR(e["frequency"][0].get<double>(), std::sqrt(4 * (1 - std::sqrt(0.6))) / (2 * M_PI), 1e-6);
-    EXPECT_NEAR(e["gap_sigma"].get<double>(), std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4 / 4, 1e-5);
+    // What the cells between the points add is less than a hundredth.
+    EXPECT_NEAR(e["gap_sigma"].get<double>(), std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4 / 4, 5e-5);
     EXPECT_TRUE(json["windows"].empty());
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "balance.png"));
     // With a gap there are windows at it too, and the picture is theirs.
