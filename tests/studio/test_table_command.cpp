@@ -196,7 +196,7 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     std::string text =
         "gap [m], pitch [rad], speed [m/s], lift_force [N], lift_force_sigma [N], pitch_moment [N m], "
         "pitch_moment_sigma [N m]\n";
-    for (const double h : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+    for (const double h : {0.1, 0.3, 0.5, 0.65, 0.7, 0.9}) {  // it balances at one of them: no cell adds to the error
         for (const double p : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
             for (const double v : {1.0, 2.0}) {
                 std::ostringstream line;
@@ -221,8 +221,7 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     EXPECT_NEAR(e["gap"].get<double>(), 0.65, 1e-6);
     EXPECT_NEAR(e["pitch"].get<double>(), 0.1, 1e-6);
     EXPECT_NEAR(e["frequency"][0].get<double>(), std::sqrt(4 * (1 - std::sqrt(0.6))) / (2 * M_PI), 1e-6);
-    // What the cells between the points add is less than a hundredth.
-    EXPECT_NEAR(e["gap_sigma"].get<double>(), std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4 / 4, 5e-5);
+    EXPECT_NEAR(e["gap_sigma"].get<double>(), std::hypot(0.5 * 0.01, 3 * 0.002) / 0.4 / 4, 1e-5);
     EXPECT_TRUE(json["windows"].empty());
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "balance.png"));
     // With a gap there are windows at it too, and the picture is theirs.

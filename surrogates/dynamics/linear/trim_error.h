@@ -6,6 +6,7 @@
 
 #include "surrogates/dynamics/linear/linear.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
+#include "surrogates/tables/analysis/equilibria.h"
 
 namespace underbody::dynamics {
 
@@ -36,9 +37,9 @@ LinearSystem heave_system(const HeavePlant& plant, double gap, double* stiffness
 /// tables::equilibria has it, and moves with the model's draws; else a trim that is given and held. Stiffness and
 /// modes: half the range that 68 % of `draws` models take (drawn_model), each about its own equilibrium to first order.
 TrimError heave_trim_error(const Model& model, const Conditions& held, double gap, bool balanced,
-                           std::size_t draws = 100);
+                           std::size_t draws = tables::usual_draws);
 /// The same free to pitch. Throws core::InputError as HeavePitch does.
 TrimError pitch_trim_error(const Model& model, const Conditions& held, double gap, double pitch, bool balanced,
-                           std::size_t draws = 100);
+                           std::size_t draws = tables::usual_draws);
 
 }  // namespace underbody::dynamics
