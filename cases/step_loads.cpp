@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <tuple>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "cases/case_loads.h"
 #include "cases/engine.h"
@@ -18,6 +20,7 @@
 #include "postproc/loads/declared.h"
 #include "postproc/loads/loads.h"
 #include "postproc/loads/loads_case.h"
+#include "postproc/loads/loads_table.h"
 #include "postproc/loads/settled.h"
 
 namespace underbody::cases {
@@ -220,86 +223,43 @@ void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
 }  // namespace
 
 core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads) {
-    std::vector<const CaseLoads*> done;
-    std::vector<std::string> names;
-    std::vector<std::string> texts;
-    std::vector<std::string> numbers;
-    const auto remember = [](std::vector<std::string>& known, const std::string& name) {
-        if (std::find(known.begin(), known.end(), name) == known.end()) {
-            known.push_back(name);
-        }
-    };
+    std::vector<std::string> names, verdicts;
+    std::vector<postproc::LoadsRow> rows;
+    postproc::LoadsColumns columns;
+    std::unordered_map<std::string, const Conditions*> first_with;  // number -> who says its unit
+    std::unordered_set<std::string> found;
     for (const auto& one : loads) {
         if (one.values.empty()) {
             continue;
         }
-        done.push_back(&one);
         names.push_back(one.name);
-        const Conditions& conditions = study.cases[one.entry].conditions;
-        for (const auto& [name, value] : conditions.texts) {
-            remember(texts, name);
+        verdicts.push_back(one.settled);
+        const Case& entry = study.cases[one.entry];
+        auto& row = rows.emplace_back(postproc::LoadsRow{entry.conditions.texts, entry.conditions.numbers, {}});
+        for (auto& [name, value] : row.numbers) {
+            first_with.emplace(name, &entry.conditions);
+            if (entry.mean && name == "time") {
+                value = std::nan("");
+            }
         }
-        for (const auto& [name, value] : conditions.numbers) {
-            remember(numbers, name);
-        }
-    }
-    core::Table table;
-    table.source = study.folder().string();
-    table.add_text("case", names);
-    for (const auto& name : texts) {
-        std::vector<std::string> values;
-        for (const auto* one : done) {
-            values.push_back(study.cases[one->entry].conditions.text(name).value_or(""));
-        }
-        table.add_text(name, std::move(values));
-    }
-    for (const auto& name : numbers) {
-        std::vector<double> values;
-        for (const auto* one : done) {
-            const Case& entry = study.cases[one->entry];
-            const bool in_mean = entry.mean && name == "time";
-            values.push_back(in_mean ? std::nan("") : entry.conditions.number(name).value_or(std::nan("")));
-        }
-        const auto first = std::find_if(done.begin(), done.end(), [&](const auto* one) {
-            return study.cases[one->entry].conditions.number(name).has_value();
-        });
-        const Conditions& conditions = study.cases[(*first)->entry].conditions;
-        const std::string unit = conditions.unit(name);
-        // A load that a manifest states stands beside the one that is computed, as in a table of `loads`.
-        const bool computed =
-            !name.ends_with("_sigma") && std::any_of(done.begin(), done.end(), [&](const CaseLoads* one) {
-                return std::any_of(one->values.begin(), one->values.end(),
-                                   [&](const LoadValue& value) { return value.name == name; });
-            });
-        const std::string column = computed ? name + "_stated" : name;
-        table.add_numbers(column, unit, std::move(values), conditions.shown_unit(name));
-    }
-    if (done.empty()) {
-        return table;
-    }
-    std::vector<LoadValue> columns;  // of all cases: some have errors that others do not
-    for (const auto* one : done) {
-        for (const auto& value : one->values) {
-            if (std::none_of(columns.begin(), columns.end(),
-                             [&](const LoadValue& known) { return known.name == value.name; })) {
-                columns.push_back(value);
+        for (const auto& value : one.values) {
+            row.values.emplace_back(value.name, value.value);
+            if (found.insert(value.name).second) {
+                columns.values.push_back({value.name, value.unit});
             }
         }
     }
-    for (const auto& column : columns) {
-        std::vector<double> values;
-        for (const auto* one : done) {
-            values.push_back(one->value(column.name));
-        }
-        if (table.find(column.name) == nullptr) {
-            table.add_numbers(column.name, column.unit, std::move(values));
-        }
-    }
-    if (table.find("settled") == nullptr) {
-        std::vector<std::string> verdicts;
-        for (const auto* one : done) {
-            verdicts.push_back(one->settled);
-        }
+    columns.units = [&](const std::string& name) {
+        const Conditions& conditions = *first_with.at(name);
+        return std::pair(conditions.unit(name), conditions.shown_unit(name));
+    };
+    // The error that a manifest states of a case is the case's; a load that it states stands beside the computed one.
+    columns.is_found = [&](const std::string& name) { return found.count(name) != 0 && !name.ends_with("_sigma"); };
+    core::Table table;
+    table.source = study.folder().string();
+    table.add_text("case", std::move(names));
+    postproc::add_loads_rows(table, rows, columns);
+    if (!rows.empty() && table.find("settled") == nullptr) {
         table.add_text("settled", std::move(verdicts));
     }
     return table;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "core/batch_problems.h"
 #include "core/text.h"
@@ -17,17 +19,31 @@ namespace underbody::postproc {
 namespace {
 
 /// Names in the order in which they first occur.
-template <typename Get>
-std::vector<std::string> names_in(const std::vector<LoadsCase>& cases, Get get) {
+template <typename T>
+std::vector<std::string> names_in(const std::vector<LoadsRow>& rows,
+                                  std::vector<std::pair<std::string, T>> LoadsRow::*list) {
     std::vector<std::string> names;
-    for (const auto& one : cases) {
-        for (const auto& entry : get(one)) {
-            if (std::find(names.begin(), names.end(), entry.first) == names.end()) {
+    std::unordered_set<std::string> known;
+    for (const auto& row : rows) {
+        for (const auto& entry : row.*list) {
+            if (known.insert(entry.first).second) {
                 names.push_back(entry.first);
             }
         }
     }
     return names;
+}
+
+/// What each row has under a name.
+template <typename T>
+std::vector<T> column_of(const std::vector<LoadsRow>& rows, std::vector<std::pair<std::string, T>> LoadsRow::*list,
+                         const std::string& name, const T& missing) {
+    std::vector<T> values;
+    values.reserve(rows.size());
+    for (const auto& row : rows) {
+        values.push_back(value_of(row.*list, name, missing));
+    }
+    return values;
 }
 
 std::string si_unit_of(const std::string& name, const std::string& written) {
@@ -128,30 +144,34 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases,
 }
 
 /// Quantities that some case has, each with its sigma where one is stated.
-void add_quantities(core::Table& table, const std::vector<LoadsCase>& cases) {
-    std::vector<std::vector<LoadsColumn>> rows;
-    for (const auto& one : cases) {
-        rows.push_back(table_columns(one.loads));
+std::vector<LoadsColumn> columns_of(const std::vector<LoadsRow>& rows) {
+    std::unordered_set<std::string> there;
+    for (const auto& name : names_in(rows, &LoadsRow::values)) {
+        there.insert(name);
     }
+    std::vector<LoadsColumn> columns;
     for (const auto& column : all_columns()) {
-        std::vector<double> values;
-        std::vector<double> sigmas;
-        bool any = false;
-        for (std::size_t i = 0; i < cases.size(); ++i) {
-            const auto found = std::find_if(rows[i].begin(), rows[i].end(),
-                                            [&](const LoadsColumn& c) { return c.name == column.name; });
-            any = any || found != rows[i].end();
-            values.push_back(found != rows[i].end() ? found->value : std::numeric_limits<double>::quiet_NaN());
-            sigmas.push_back(value_of(cases[i].sigmas, column.name, std::numeric_limits<double>::quiet_NaN()));
+        if (there.count(column.name) == 0) {
+            continue;
         }
-        if (any) {
-            table.add_numbers(column.name, column.unit, std::move(values));
-        }
-        if (any &&
-            std::any_of(cases.begin(), cases.end(), [&](const LoadsCase& c) { return has(c.sigmas, column.name); })) {
-            table.add_numbers(column.name + "_sigma", column.unit, std::move(sigmas));
+        columns.push_back(column);
+        if (there.count(column.name + "_sigma") != 0) {
+            columns.push_back({column.name + "_sigma", column.unit});
         }
     }
+    return columns;
+}
+
+/// A case as a row: its loads, each with its sigma where one is stated.
+LoadsRow row_of(const LoadsCase& one) {
+    LoadsRow row{one.texts, one.numbers, {}};
+    for (const auto& column : table_columns(one.loads)) {
+        row.values.emplace_back(column.name, column.value);
+    }
+    for (const auto& [name, sigma] : one.sigmas) {
+        row.values.emplace_back(name + "_sigma", sigma);
+    }
+    return row;
 }
 
 /// Depth, solver or file that the numbers come from, how settled they are, and the file.
@@ -190,35 +210,45 @@ void add_warnings(core::Table& table, const std::vector<LoadsCase>& cases) {
     }
 }
 
-core::Table loads_table(const std::vector<LoadsCase>& cases,
-                        const std::vector<std::pair<std::string, std::string>>& written_units) {
-    refuse_mixed_depths(cases);
-    core::Table table;
+void add_loads_rows(core::Table& table, const std::vector<LoadsRow>& rows, const LoadsColumns& columns) {
+    constexpr double missing = std::numeric_limits<double>::quiet_NaN();
     const auto free_name = [&](std::string name) {
-        const auto sigma = [&] { return name.ends_with("_sigma") && is_column(name.substr(0, name.size() - 6)); };
-        while (table.find(name) != nullptr || is_column(name) || sigma()) {
+        while (table.find(name) != nullptr || columns.is_found(name)) {
             name += "_stated";
         }
         return name;
     };
-    for (const auto& name : names_in(
-             cases, [](const LoadsCase& c) -> const auto& { return c.texts; })) {
-        std::vector<std::string> values;
-        for (const auto& one : cases) {
-            values.push_back(value_of(one.texts, name, std::string()));
-        }
-        table.add_text(free_name(name), std::move(values));
+    for (const auto& name : names_in(rows, &LoadsRow::texts)) {
+        table.add_text(free_name(name), column_of(rows, &LoadsRow::texts, name, std::string()));
     }
-    for (const auto& name : names_in(
-             cases, [](const LoadsCase& c) -> const auto& { return c.numbers; })) {
-        std::vector<double> values;
-        for (const auto& one : cases) {
-            values.push_back(value_of(one.numbers, name, std::numeric_limits<double>::quiet_NaN()));
+    for (const auto& name : names_in(rows, &LoadsRow::numbers)) {
+        const auto [unit, written] = columns.units(name);
+        table.add_numbers(free_name(name), unit, column_of(rows, &LoadsRow::numbers, name, missing), written);
+    }
+    for (const auto& column : columns.values) {
+        if (table.find(column.name) == nullptr) {
+            table.add_numbers(column.name, column.unit, column_of(rows, &LoadsRow::values, column.name, missing));
         }
+    }
+}
+
+core::Table loads_table(const std::vector<LoadsCase>& cases,
+                        const std::vector<std::pair<std::string, std::string>>& written_units) {
+    refuse_mixed_depths(cases);
+    std::vector<LoadsRow> rows;
+    rows.reserve(cases.size());
+    std::transform(cases.begin(), cases.end(), std::back_inserter(rows), row_of);
+    LoadsColumns columns;
+    columns.values = columns_of(rows);
+    columns.units = [&](const std::string& name) {
         const std::string written = value_of(written_units, name, std::string());
-        table.add_numbers(free_name(name), si_unit_of(name, written), std::move(values), written);
-    }
-    add_quantities(table, cases);
+        return std::pair(si_unit_of(name, written), written);
+    };
+    columns.is_found = [](const std::string& name) {
+        return is_column(name) || (name.ends_with("_sigma") && is_column(name.substr(0, name.size() - 6)));
+    };
+    core::Table table;
+    add_loads_rows(table, rows, columns);
     add_origins(table, cases);
     add_warnings(table, cases);
     return table;
