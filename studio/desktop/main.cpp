@@ -2,7 +2,6 @@
 #include <QVTKOpenGLNativeWidget.h>
 
 #include <CLI/CLI.hpp>
-#include <QApplication>
 #include <QFile>
 #include <QLibraryInfo>
 #include <QSurfaceFormat>
@@ -14,6 +13,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/virtual_display.h"
+#include "studio/desktop/application.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/state/action_log.h"
@@ -135,7 +135,7 @@ int run(int argc, char** argv) {
     QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
     QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
-    QApplication application(argc, argv);
+    Application application(argc, argv);
     // Qt takes the user's locale over; numbers in files must not change with it.
     std::setlocale(LC_NUMERIC, "C");
     QLocale::setDefault(QLocale::c());
@@ -144,6 +144,7 @@ int run(int argc, char** argv) {
     QApplication::setStyle(window_style());
     set_theme("system");
     MainWindow window(options.screenshots.empty());
+    application.failed = [&window](const std::exception_ptr& error) { window.show_failure("the window", error); };
     if (!options.theme.empty()) {
         set_theme(QString::fromStdString(options.theme));
     }

@@ -119,7 +119,7 @@ MainWindow::MainWindow(bool remember)
     problems_->note("Ready. Open a study with Ctrl+O, or drop its folder on the window.");
 }
 
-// Jobs wind up before the widgets that their results would go to.
+// Jobs end before the widgets that their results would go to.
 MainWindow::~MainWindow() { delete jobs_; }
 
 void MainWindow::build_workspaces() {
@@ -360,10 +360,10 @@ void MainWindow::fill_recent() {
 
 void MainWindow::offer_recovery() {
     const auto logs = left_over_logs(log_folder(remember_));
-    if (!logs.empty() && ask("Go on",
-                             "The program did not wind up the last time. Its session can be done again from its log, "
-                             "up to where it stopped.",
-                             "Go on where it stopped")) {
+    if (!logs.empty() && ask("Restore the session",
+                             "The program was not closed properly the last time. The session can be restored from its "
+                             "log, up to where it stopped.",
+                             "Restore")) {
         desk_->replay_log(logs.front(), {}, true);
         return;  // the log stays until the next start: its lines stand in the new one by then
     }

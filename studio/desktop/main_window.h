@@ -48,8 +48,10 @@ public:
     /// A sheet that makes a measurement of the study out of data sets, logs and tables. Throws core::InputError when no
     /// study is open.
     MeasurementSheet* take_measurements(const std::vector<std::filesystem::path>& data);
-    /// Asks whether to go on where a program that did not wind up stopped.
+    /// Asks whether to go on where a program that was not closed properly stopped.
     void offer_recovery();
+    /// Says that something (`what`: the work that was asked for) failed, and why.
+    void show_failure(const QString& what, const std::exception_ptr& error);
     /// The last error that was shown, for a start without anybody at the window.
     [[nodiscard]] QString last_error() const { return last_error_; }
     /// Writes to a path that somebody chose: adds the ending, asks before it replaces a file. False when it was not
@@ -92,7 +94,6 @@ private:
     void follow_state();
     void follow_session();
     void watch_files();
-    void show_failure(const QString& what, const std::exception_ptr& error);
     void take_in_what_is_shown();
     void open_report();
     void export_picture();

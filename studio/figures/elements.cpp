@@ -198,6 +198,9 @@ void paint_warped(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const GridImage& 
     const int fine = 2;
     const int columns = box.width() * fine;
     const int rows = box.height() * fine;
+    if (columns <= 0 || rows <= 0) {
+        return;  // a window so small that title and axes leave no room
+    }
     const auto across = cells_of_pixels(x, box.left(), columns, grid.x_lower, grid.x_upper, grid.x_by_ratio,
                                         grid.image.width(), 1.0 / fine);
     const auto down = cells_of_pixels(y, box.top(), rows, grid.y_lower, grid.y_upper, grid.y_by_ratio,

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "core/virtual_display.h"
 #include "tests/studio/desktop/few_gaps.h"
 #include "tests/support/support.h"
 
@@ -117,6 +118,36 @@ TEST(Desktop, ShowsAStudyInEveryWorkspace) {
     EXPECT_GT(difference(picture(shots / "tables.png"), picture(shots / "tables-used.png")), 0.0005)
         << "equilibria move";
     EXPECT_GT(difference(picture(shots / "stability.png"), picture(shots / "stability-used.png")), 0.01) << "a motion";
+}
+
+// Started as from a desktop, without --screenshot, which brings every view to the front once.
+TEST(Desktop, StaysOpenOverTheComputedShippedStudy) {
+    if (!has_xvfb()) {
+        GTEST_SKIP() << "skipped: Xvfb is not installed";
+    }
+    const core::TemporaryFolder folder;
+    const fs::path study = folder.path() / "evie";
+    fs::copy(test::source_folder() / "cases" / "evie", study, fs::copy_options::recursive);
+    fs::remove_all(study / ".underbody");
+    const auto computed = test::run_underbody({"study", "run", study.string(), "--no-pictures"});
+    ASSERT_EQ(computed.exit_code, 0) << computed.errors;
+    const core::VirtualDisplay display(1440, 900);
+    for (const std::string& named : {study.string(), std::string()}) {
+        std::vector<std::string> arguments = {"15", (test::program_folder() / "underbody-studio").string()};
+        if (!named.empty()) {
+            arguments.push_back(named);
+        }
+        const auto run = test::run_program("timeout", arguments, {},
+                                           {{"DISPLAY", display.name()},
+                                            {"WAYLAND_DISPLAY", ""},
+                                            {"QT_QPA_PLATFORM", ""},
+                                            {"LIBGL_ALWAYS_SOFTWARE", "1"},
+                                            {"HOME", folder.path().string()},
+                                            {"XDG_CONFIG_HOME", (folder.path() / "config").string()},
+                                            {"XDG_DATA_HOME", (folder.path() / "data").string()}});
+        EXPECT_EQ(run.exit_code, 124) << "it ended by itself: " << run.errors;
+        EXPECT_EQ(run.errors.find("underbody-studio:"), std::string::npos) << run.errors;
+    }
 }
 
 // J4: the second case less the first, in place of its field.

@@ -397,6 +397,20 @@ TEST(Figures, WrongSizesAndEndingsAreRefused) {
     EXPECT_GT(std::filesystem::file_size(folder.path() / "x.pdf"), 2000U);
 }
 
+// A view in a tab that nobody looks at is as small as its layout lets it.
+TEST(Figures, AreDrawnHoweverSmall) {
+    core::Random random(20261124);
+    for (Figure figure : {force_figure(), stability_figure(), bars_figure(), log_figure(), value_figure(false)}) {
+        for (int i = 0; i < 40; ++i) {
+            const PictureSize size{static_cast<int>(1 + 200 * random.uniform()),
+                                   static_cast<int>(1 + 200 * random.uniform()), 1};
+            figure.x.logarithmic = i % 2 == 1;
+            const std::string png = render_png(figure, size);
+            EXPECT_EQ(png.substr(1, 3), "PNG") << size.width << " x " << size.height;
+        }
+    }
+}
+
 TEST(Figures, UnitsReadAsPeopleWriteThem) {
     EXPECT_EQ(pretty_unit("N s^2/m^2"), "N s²/m²");
     EXPECT_EQ(pretty_unit("kg m^-1 s^-1"), "kg m⁻¹ s⁻¹");
