@@ -318,6 +318,7 @@ const std::vector<QuantityName>& quantity_names() {
         {"position_x", "m", "place along the ground, in the direction of heading 0", "X"},
         {"position_y", "m", "place along the ground, to starboard of heading 0", "Y"},
         {"heading", "rad", "heading, positive bow to starboard", "psi"},
+        {"roll", "rad", "roll, positive starboard down", "phi"},
         {"sway_velocity", "m/s", "speed through the water to starboard", "v"},
         {"yaw_rate", "rad/s", "rate of heading, positive bow to starboard", "r"},
         {"lift_force", "N", "vertical force, positive up (repulsion)", "lift"},

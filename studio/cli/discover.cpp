@@ -97,6 +97,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
     text += missing ? "New model: " + (folder / "model.toml").string() +
                           (found.motion == "surface" ? " (predict and linear take it)\n"
+                           : found.motion == "body"  ? " (predict and simulate take it)\n"
                                                      : " (simulate, predict, region and export take it)\n")
                     : "";
     text += "Report: " + (folder / "report.html").string() + "\n";

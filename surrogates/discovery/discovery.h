@@ -124,7 +124,7 @@ struct AxisResidual {
 };
 
 struct Discovery {
-    std::string motion = "heave";    ///< of a time series: heave, heave_pitch, surface
+    std::string motion = "heave";    ///< of a time series: heave, heave_pitch, surface, body
     std::vector<AxisResidual> axes;  ///< coupled motions: one a load
     std::string verdict;             ///< none, effect, unknown
     std::string sentence;            ///< the verdict for people

@@ -28,6 +28,11 @@ struct Look {
     bool time_series = false;
     bool pitches = false;  ///< heave with pitch
     bool slides = false;   ///< on the ground
+    bool turns = false;    ///< on the ground, or the whole body
+    /// As an effect sees it, asked about these quantities.
+    [[nodiscard]] dynamics::SearchContext context(const std::vector<std::string>& asked) const {
+        return {model, asked, varying, time_series, pitches, slides, turns};
+    }
 };
 
 /// False where the effect can change nothing there.
@@ -35,9 +40,7 @@ bool add_use(Hypothesis& hypothesis, const dynamics::Effect& effect, const std::
     const dynamics::EffectInfo& info = effect.info();
     const std::vector<std::string> own{quantity};
     std::vector<dynamics::EffectParameter> parameters = info.parameters;
-    if (!effect.look({look.model, quantity.empty() ? look.quantities : own, look.varying, look.time_series,
-                      look.pitches, look.slides},
-                     parameters, hypothesis.prior)) {
+    if (!effect.look(look.context(quantity.empty() ? look.quantities : own), parameters, hypothesis.prior)) {
         return false;
     }
     dynamics::EffectUse use = dynamics::neutral_use(info.name);
@@ -143,8 +146,7 @@ bool can_be_seen(const dynamics::Effect& effect, const Look& look) {
     return std::all_of(search.needs.begin(), search.needs.end(), moves) &&
            (search.needs_one_of.empty() ||
             std::any_of(search.needs_one_of.begin(), search.needs_one_of.end(), moves)) &&
-           effect.look({look.model, look.quantities, look.varying, look.time_series, look.pitches, look.slides},
-                       parameters, prior);
+           effect.look(look.context(look.quantities), parameters, prior);
 }
 
 /// The effect that puts another value in the place of a declared number.
@@ -399,14 +401,19 @@ std::vector<Hypothesis> motion_hypotheses(const dynamics::MotionShape& shape, co
     for (const dynamics::MotionShape::Load& load : shape.loads) {
         quantities.push_back(load.quantity);
     }
-    const bool pitches = &shape == &dynamics::heave_pitch_motion().shape(),
+    const bool whole = &shape == &dynamics::body_motion().shape(),
+               pitches = whole || &shape == &dynamics::heave_pitch_motion().shape(),
                slides = &shape == &dynamics::surface_motion().shape();
-    const Look look{model, varying, quantities, true, pitches, slides};
+    const Look look{model, varying, quantities, true, pitches, slides, whole || slides};
     std::vector<Hypothesis> list = series_hypotheses(look);
     if (slides) {
         std::erase_if(list, [&](const Hypothesis& one) { return !acts_on_the_ground(one, model); });
     }
-    for (const std::string& quantity : quantities) {
+    std::vector<std::string> tables = quantities;
+    if (whole) {
+        tables.emplace_back("drag_force");
+    }
+    for (const std::string& quantity : tables) {
         add_declared_scale(look, quantity, list);
         if (!list.empty() && list.back().form.starts_with("force.") && quantity == "pitch_moment") {
             list.back().depends_on.emplace_back("pitch");

@@ -161,10 +161,23 @@ void MotionLoop::list_candidates() {
         }
     }
     candidates_ = motion_hypotheses(shape(), model_, varying);
+    const bool pushed = std::find(varying.begin(), varying.end(), dynamics::Channel::input_force) != varying.end();
     std::erase_if(candidates_, [&](const Hypothesis& one) {
-        return out_of_reach(one, model_) || (!input_recorded_ && touch_of(one, model_).input);
+        return out_of_reach(one, model_) || (!pushed && touch_of(one, model_).input) || needs_unread(one);
     });
     keep_only(candidates_, options_.candidates);
+}
+
+/// A law over a place that no run has readings of.
+bool MotionLoop::needs_unread(const Hypothesis& hypothesis) const {
+    return std::any_of(hypothesis.depends_on.begin(), hypothesis.depends_on.end(), [&](const std::string& quantity) {
+        for (std::size_t i = 0; i < shape().states.size(); ++i) {
+            if (shape().is_place(i) && shape().states[i].channel == quantity) {
+                return std::find(channels_.begin(), channels_.end(), i) == channels_.end();
+            }
+        }
+        return false;
+    });
 }
 
 MotionExperiment::Result MotionLoop::fitted(const Hypothesis& hypothesis,

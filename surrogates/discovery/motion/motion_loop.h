@@ -29,6 +29,7 @@ private:
     void set_null(const MotionNoise& noise);
     void try_between();
     void list_candidates();
+    [[nodiscard]] bool needs_unread(const Hypothesis& hypothesis) const;
     [[nodiscard]] MotionExperiment::Result fitted(const Hypothesis& hypothesis,
                                                   const std::vector<std::vector<double>>& starts,
                                                   const MotionNoise& begin) const;

@@ -18,7 +18,7 @@ const Effect& cable_pull_effect() {
                                        "definition"},
                             {.kin = {"surge"}})),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
-                    double& /*prior*/) { return context.slides; },
+                    double& /*prior*/) { return context.turns; },
          .add_to =
              [](HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) {
                  terms.surface.pull_x += use.values[0];

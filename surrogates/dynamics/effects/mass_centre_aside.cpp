@@ -17,7 +17,7 @@ const Effect& mass_centre_aside_effect() {
                             "rigid body: moment of a force about the centre of gravity"},
                  {.kin = {"turning"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
-                    double& /*prior*/) { return context.slides; },
+                    double& /*prior*/) { return context.turns; },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,
                       const Model& /*model*/) { terms.surface.mass_aside += use.values[0]; }}};
     return effect;

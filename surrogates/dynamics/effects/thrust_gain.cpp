@@ -2,6 +2,7 @@
 #include "surrogates/dynamics/effects/catalogue.h"
 #include "surrogates/dynamics/effects/law_effect.h"
 #include "surrogates/dynamics/effects/search.h"
+#include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
@@ -17,7 +18,7 @@ const Effect& thrust_gain_effect() {
                             "definition"},
                  {.kin = {"surge"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
-                    double& /*prior*/) { return context.slides; },
+                    double& /*prior*/) { return context.turns && !context.model.jets.empty(); },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,
                       const Model& /*model*/) { terms.surface.thrust_gain *= use.values[0]; }}};
     return effect;

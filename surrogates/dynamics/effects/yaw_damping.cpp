@@ -17,7 +17,7 @@ const Effect& yaw_damping_effect() {
                             "definition"},
                  {.kin = {"turning"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
-                    double& /*prior*/) { return context.slides; },
+                    double& /*prior*/) { return context.turns; },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,
                       const Model& /*model*/) { terms.surface.yaw += use.values[0]; }}};
     return effect;

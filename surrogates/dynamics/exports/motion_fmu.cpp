@@ -289,8 +289,8 @@ MotionFmu export_motion_fmu(const Model& declared, const std::filesystem::path& 
     }
     const HeavePlant vertical =
         options.motion == FmuMotion::heave ? HeavePlant(model, held, varying) : vertical_channel(model, held, varying);
-    if (options.motion == FmuMotion::heave_pitch) {
-        refuse_pitch_effects(model, vertical.terms, "an FMU");
+    if (options.motion != FmuMotion::heave) {
+        refuse_pitch_effects(model, vertical.terms, options.motion == FmuMotion::body);
     }
     MotionSource source{model, options.motion, held, own_channels(options.motion), varying, vertical, fmu};
     check(source, options.start);

@@ -106,6 +106,7 @@ struct SearchContext {
     bool time_series = false;
     bool pitches = false;  ///< the body's pitch moves with its heave, and was measured
     bool slides = false;   ///< the body moves on the ground
+    bool turns = false;    ///< it moves along and across itself and in yaw: on the ground or off it
 };
 
 /// Implementations are stateless and live for ever in the registry; they may be used from many threads.

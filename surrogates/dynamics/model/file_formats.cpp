@@ -263,16 +263,18 @@ std::vector<core::FileTable> log_tables() {
 const core::FileFormat& dataset_format() {
     static const core::FileFormat format = [] {
         core::FileFormat made{"dataset", "dataset.toml", "measurements: a folder of runs", {}};
-        made.tables.push_back({"",
-                               "What stands before the first table",
-                               {{"kind", "time_series | static", "\"time_series\"", "",
-                                 "runs in time, or set points with measured forces"},
-                                {"title", "text", "\"heave tests over a flat ground\"", "none", "for people"},
-                                {"motion", "heave | heave_pitch | surface", "\"heave_pitch\"",
-                                 "heave_pitch where every run's pitch moves and the model declares pitch",
-                                 "which motion the runs are of: pitch moves freely with heave, or as something else "
-                                 "makes it; surface: flat on the ground, driven by its jets"}},
-                               true});
+        made.tables.push_back(
+            {"",
+             "What stands before the first table",
+             {{"kind", "time_series | static", "\"time_series\"", "",
+               "runs in time, or set points with measured forces"},
+              {"title", "text", "\"heave tests over a flat ground\"", "none", "for people"},
+              {"motion", "heave | heave_pitch | surface | body", "\"heave_pitch\"",
+               "heave_pitch where every run's pitch moves and the model declares pitch",
+               "which motion the runs are of: pitch moves freely with heave, or as something else "
+               "makes it; surface: flat on the ground, driven by its jets; body: the whole vehicle off "
+               "the ground, roll held at zero"}},
+             true});
         made.tables.push_back(
             {"noise",
              "one standard deviation of each sensor; left out, it is estimated from the data",

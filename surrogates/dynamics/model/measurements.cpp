@@ -113,19 +113,35 @@ std::map<std::string, double> read_noise(const core::TomlTable& table) {
     return noise;
 }
 
-void check_time_series(const MeasuredRun& run, bool on_the_ground) {
+/// What a run of a motion needs beside its time; what else the whole body needs is asked for with its model.
+struct NeededColumns {
+    std::string run;
+    std::vector<std::string> columns;
+    std::string hint;
+};
+NeededColumns needed_columns(const std::string& motion) {
+    if (motion == "surface") {
+        return {"a run on the ground (motion = \"surface\")",
+                {"time", "position_x", "position_y", "heading"},
+                "time [s], position_x [m], position_y [m] and heading [rad], bow to starboard"};
+    }
+    if (motion == "body") {
+        return {"a run of the whole body (motion = \"body\")",
+                {"time", "gap", "pitch"},
+                "time [s], gap [m], pitch [rad], nose up; heading or yaw_rate; position_x and position_y, or speed and "
+                "sway_velocity"};
+    }
+    return {"a time series",
+            {"time", "gap"},
+            "kind = \"static\" is for set points without motion, motion = \"surface\" for runs on the ground"};
+}
+
+void check_time_series(const MeasuredRun& run, const std::string& motion) {
     const core::Place whole{run.table.source, {}, {}, {}};
-    const std::vector<std::string> on_ground{"time", "position_x", "position_y", "heading"}, in_heave{"time", "gap"};
-    for (const std::string& needed : on_the_ground ? on_ground : in_heave) {
-        if (run.table.find(needed) == nullptr) {
-            throw core::InputError(
-                "missing",
-                on_the_ground ? "a run on the ground (motion = \"surface\") needs the column " + needed
-                              : "a time series needs the column " + needed,
-                whole,
-                on_the_ground ? "time [s], position_x [m], position_y [m] and heading [rad], bow to starboard"
-                              : "kind = \"static\" is for set points without motion, motion = \"surface\" for runs "
-                                "on the ground");
+    const NeededColumns needed = needed_columns(motion);
+    for (const std::string& column : needed.columns) {
+        if (run.table.find(column) == nullptr) {
+            throw core::InputError("missing", needed.run + " needs the column " + column, whole, needed.hint);
         }
     }
     const std::vector<double>& time = run.table.numbers("time");
@@ -207,14 +223,14 @@ void check_static(const MeasuredRun& run) {
 
 /// Columns under names that nobody reads: what they were probably meant for. An input that vanishes leaves the run with
 /// zero input, which is refused.
-void check_names(const MeasuredRun& run, bool time_series, bool on_the_ground, core::Problems& problems) {
+void check_names(const MeasuredRun& run, bool time_series, bool of_jets, core::Problems& problems) {
     for (const core::Column& column : run.table.columns()) {
         const std::string base =
             column.name.ends_with("_sigma") ? column.name.substr(0, column.name.size() - 6) : column.name;
         const std::string meant = core::meant_name(column);
         const bool lacking = !meant.empty() && run.table.find(meant) == nullptr && run.conditions.count(meant) == 0;
         if (core::find_quantity(base) != nullptr || is_simulated(column.name) || (column.is_text() && !lacking) ||
-            (on_the_ground && column.name.starts_with("thrust_"))) {
+            (of_jets && column.name.starts_with("thrust_"))) {
             continue;
         }
         const core::Place place = run.table.place(0, column.name);
@@ -324,7 +340,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
                                                                            : MeasurementKind::time_series;
     data.title = root.string_or("title", {});
-    data.motion = root.choice("motion", {"heave", "heave_pitch", "surface"}, "");
+    data.motion = root.choice("motion", {"heave", "heave_pitch", "surface", "body"}, "");
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
     const LogChannels channels = read_channels(root.table_or_empty("log"));
@@ -356,9 +372,9 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         windows.push_back(window);
         run.table = read_run(run.file, channels, window, entry, data.problems);
         const bool time_series = data.kind == MeasurementKind::time_series,
-                   on_the_ground = time_series && data.motion == "surface";
-        time_series ? check_time_series(run, on_the_ground) : check_static(run);
-        check_names(run, time_series, on_the_ground, data.problems);
+                   of_jets = time_series && (data.motion == "surface" || data.motion == "body");
+        time_series ? check_time_series(run, data.motion) : check_static(run);
+        check_names(run, time_series, of_jets, data.problems);
         data.runs.push_back(std::move(run));
     }
     gather(data.problems);

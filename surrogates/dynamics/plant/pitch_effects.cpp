@@ -6,25 +6,26 @@ namespace underbody::dynamics {
 
 namespace {
 
-bool acts(const PitchTerms& t) {
-    return t.moment != 0 || t.linear != 0 || t.quadratic != 0 || t.stiffness != 0 || t.inertia != 0 ||
-           t.input_arm != 0 || t.mass_forward != 0 || t.spring != 0;
+bool acts(const HeaveTerms& terms, bool whole_body) {
+    const PitchTerms& t = terms.pitch;
+    return (whole_body && !(terms.surface == SurfaceTerms{})) || t.moment != 0 || t.linear != 0 || t.quadratic != 0 ||
+           t.stiffness != 0 || t.inertia != 0 || t.input_arm != 0 || t.mass_forward != 0 || t.spring != 0;
 }
 
 }  // namespace
 
-void refuse_pitch_effects(const Model& model, const HeaveTerms& terms, const std::string& motion) {
-    if (!acts(terms.pitch)) {
+void refuse_pitch_effects(const Model& model, const HeaveTerms& terms, bool whole_body) {
+    if (!acts(terms, whole_body)) {
         return;
     }
     std::string names;
     for (const EffectUse& use : model.effects) {
         HeaveTerms own;
         effect(use.name).add_to(own, use, model);
-        names += acts(own.pitch) ? (names.empty() ? "" : ", ") + use.name : "";
+        names += acts(own, whole_body) ? (names.empty() ? "" : ", ") + use.name : "";
     }
-    throw core::InputError("motion", names + ": acts in heave with pitch, not in " + motion, {model.name, {}, {}, {}},
-                           "leave it out of the model, or take heave with pitch");
+    throw core::InputError("motion", names + ": an FMU knows nothing of it", {model.name, {}, {}, {}},
+                           "leave it out of the model; simulate and predict take it");
 }
 
 }  // namespace underbody::dynamics

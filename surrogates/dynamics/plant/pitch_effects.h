@@ -1,15 +1,13 @@
-// Motions that have no effects on the pitch.
+// What an FMU has no code for.
 #pragma once
-
-#include <string>
 
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
-/// Throws core::InputError where an effect of the model acts on the pitch, of which this motion ("the motion of the
-/// whole body") knows nothing: it would be left out in silence.
-void refuse_pitch_effects(const Model& model, const HeaveTerms& terms, const std::string& motion);
+/// Throws core::InputError where an effect of the model acts on the pitch or, of the whole body, along and across it:
+/// an FMU knows nothing of these, and would leave them out in silence.
+void refuse_pitch_effects(const Model& model, const HeaveTerms& terms, bool whole_body);
 
 }  // namespace underbody::dynamics

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/counted.h"
 #include "core/quantile.h"
@@ -106,6 +107,19 @@ InsideTables longest_inside(std::span<const double> gap, const GapRange& tables,
     }
     found.outside = gap.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(gap.size());
     return found;
+}
+
+void unwrap(std::vector<double>& angle) {
+    constexpr double turn_round = 2 * std::numbers::pi;
+    double last = std::nan(""), added = 0;
+    for (double& value : angle) {
+        const double read = value;
+        if (std::isfinite(read) && std::isfinite(last)) {
+            added -= turn_round * std::round((read - last) / turn_round);
+        }
+        last = std::isfinite(read) ? read : last;
+        value += added;
+    }
 }
 
 std::string range_text(const GapRange& tables) {

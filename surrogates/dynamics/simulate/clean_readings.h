@@ -27,6 +27,9 @@ struct InsideTables {
 /// `gap` in m; `noise` is one standard deviation of a reading, m: a reading within six of them of a table is inside.
 InsideTables longest_inside(std::span<const double> gap, const GapRange& tables, double noise);
 
+/// A heading that jumps by a turn goes on.
+void unwrap(std::vector<double>& angle);
+
 /// "(0.001 to 0.04 m)"
 std::string range_text(const GapRange& tables);
 

@@ -4,15 +4,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/pitch_run.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
 namespace underbody::dynamics {
 
 const Motion* motion_of(const Model& model, const Measurements& data) {
-    return data.kind == MeasurementKind::time_series && data.motion == surface_motion().shape().name ? &surface_motion()
-           : moves_in_pitch(model, data) ? &heave_pitch_motion()
-                                         : nullptr;
+    for (const Motion* const said : {&surface_motion(), &body_motion()}) {
+        if (data.kind == MeasurementKind::time_series && data.motion == said->shape().name) {
+            return said;
+        }
+    }
+    return moves_in_pitch(model, data) ? &heave_pitch_motion() : nullptr;
+}
+
+std::vector<std::string> MeasuredMotion::clean_after(std::vector<std::string> said, const std::string& name,
+                                                     const Model& model) {
+    const GapRange tables = lift_gap_range(model);
+    for (std::size_t i = 0; i < shape().states.size(); ++i) {
+        std::vector<double>& values = readings_.value[i];
+        if (values.empty()) {
+            continue;
+        }
+        const bool gap = shape().states[i].channel == channel_name(Channel::gap);
+        if (const std::size_t saturated = gap ? drop_saturated(time(), values) : 0; saturated > 0) {
+            said.push_back(saturated_text(name, saturated));
+        }
+        const double own = sensor_noise(time(), values);
+        if (const std::size_t outliers = drop_outliers(values, std::max(own, 1e-9)); outliers > 0) {
+            said.push_back(outliers_text(name, outliers, shape().states[i].channel));
+        }
+        const InsideTables inside = gap ? longest_inside(values, tables, own) : InsideTables{};
+        if (inside.outside > 0) {
+            said.push_back(outside_text(name, inside, tables) + "; the tables' end values are taken for it");
+        }
+    }
+    return said;
 }
 
 bool column_moves(const MeasuredRun& run, const std::string& column) {
@@ -37,10 +66,6 @@ std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& sta
 }
 
 namespace {
-
-constexpr auto most = static_cast<int>(most_states);
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 
 /// Readings less motion in units of noise, channel by channel; 0 where nothing was read.
 std::vector<double> misfit(MeasuredMotion& run, const MotionReadings& readings, const MotionState& state,
@@ -67,10 +92,12 @@ double square(const std::vector<double>& values) {
     return std::isfinite(sum) ? sum : 1e300;
 }
 
-}  // namespace
-
-std::optional<MotionState> fitted_state(MeasuredMotion& run, const MotionReadings& readings, std::size_t from,
-                                        std::size_t start) {
+/// fitted_state() of a motion of at most so many states.
+template <int most>
+std::optional<MotionState> fit_state(MeasuredMotion& run, const MotionReadings& readings, std::size_t from,
+                                     std::size_t start) {
+    using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
+    using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
     const std::vector<MotionShape::State>& states = run.shape().states;
     const std::optional<MotionStart> line = run.start(readings, from, start);
     if (!line) {
@@ -117,6 +144,8 @@ std::optional<MotionState> fitted_state(MeasuredMotion& run, const MotionReading
                 const auto k = static_cast<Eigen::Index>(i);
                 normal(k, k) += 1 / (loose[i] * loose[i]);
                 right[k] -= (state[i] - line->state[i]) / (loose[i] * loose[i]);
+            } else if (readings.value[i].empty()) {
+                normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1;  // stays where it begins
             }
         }
         bool better = false;
@@ -152,6 +181,15 @@ std::optional<MotionState> fitted_state(MeasuredMotion& run, const MotionReading
         }
     }
     return state;
+}
+
+}  // namespace
+
+std::optional<MotionState> fitted_state(MeasuredMotion& run, const MotionReadings& readings, std::size_t from,
+                                        std::size_t start) {
+    constexpr std::size_t of_few = 6;
+    return run.shape().states.size() <= of_few ? fit_state<of_few>(run, readings, from, start)
+                                               : fit_state<most_states>(run, readings, from, start);
 }
 
 std::vector<MotionWindow> predict_windows(MeasuredMotion& run, double horizon, double past) {

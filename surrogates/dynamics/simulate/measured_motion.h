@@ -16,7 +16,7 @@
 
 namespace underbody::dynamics {
 
-inline constexpr std::size_t most_states = 6, most_loads = 3;
+inline constexpr std::size_t most_states = 10, most_loads = 5;
 /// States in the order of MotionShape::states; what a motion has not is 0.
 using MotionState = std::array<double, most_states>;
 /// Forces (N) and moments (N m) beside the model's, in the order of MotionShape::loads.
@@ -34,6 +34,7 @@ struct MotionShape {
         double begin_width = 0.05;  ///< rates: how loosely a line through the first readings is believed by a filter
         double fit_width = 0.05;    ///< the same by a fit to the readings before a window
         double far = 100;           ///< a motion beyond this has run away
+        bool ignorable = false;     ///< no rate depends on it
     };
     struct Load {
         std::string quantity, unit;
@@ -96,13 +97,18 @@ public:
     /// How many rows from the first on the body moves freely.
     [[nodiscard]] virtual std::size_t free_rows() const = 0;
     /// Readings that a model is not judged by become missing; what is said of it.
-    virtual std::vector<std::string> clean_readings(const std::string& name, const Model& model) = 0;
+    virtual std::vector<std::string> clean_readings(const std::string& name, const Model& model) {
+        return clean_after({}, name, model);
+    }
 
     /// Readings of the run, rates with the factor of the records.
     [[nodiscard]] const MotionReadings& readings() const { return readings_; }
     void set_noise(const std::array<double, most_states>& noise) { readings_.noise = noise; }
 
 protected:
+    /// Outliers, and gaps at the end of the sensor's range, become missing; gaps outside the tables of the model are
+    /// said. What is said of it, after `said`.
+    std::vector<std::string> clean_after(std::vector<std::string> said, const std::string& name, const Model& model);
     MotionReadings readings_;
 };
 
@@ -128,6 +134,10 @@ const Motion& heave_pitch_motion();
 /// On the ground: position_x, position_y, heading, speed, sway_velocity, yaw_rate; forces forward and to starboard,
 /// moment of yaw.
 const Motion& surface_motion();
+/// The vehicle off the ground, roll held at zero: position_x, position_y, gap, pitch, heading and their rates speed
+/// (along the ground), sway_velocity, heave_velocity, pitch_rate, yaw_rate (about the body's own axis); forces forward,
+/// to starboard and up, moments nose up and bow to starboard.
+const Motion& body_motion();
 /// The motion that these runs are of as dataset.toml says, or as model and readings tell; nullptr: heave alone.
 const Motion* motion_of(const Model& model, const Measurements& data);
 

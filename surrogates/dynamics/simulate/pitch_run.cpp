@@ -107,30 +107,6 @@ PitchRun::PitchRun(const Model& model, const MeasuredRun& run, const RecordReadi
     }
 }
 
-std::vector<std::string> PitchRun::clean_readings(const std::string& name, const Model& model) {
-    const GapRange tables = lift_gap_range(model);
-    std::vector<std::string> said;
-    for (std::size_t i = 0; i < pitch_states; ++i) {
-        std::vector<double>& values = readings_.value[i];
-        if (values.empty()) {
-            continue;
-        }
-        const bool gap = pitch_channels[i] == Channel::gap;
-        if (const std::size_t saturated = gap ? drop_saturated(time(), values) : 0; saturated > 0) {
-            said.push_back(saturated_text(name, saturated));
-        }
-        const double own = sensor_noise(time(), values);
-        if (const std::size_t outliers = drop_outliers(values, std::max(own, 1e-9)); outliers > 0) {
-            said.push_back(outliers_text(name, outliers, channel_name(pitch_channels[i])));
-        }
-        const InsideTables inside = gap ? longest_inside(values, tables, own) : InsideTables{};
-        if (inside.outside > 0) {
-            said.push_back(outside_text(name, inside, tables) + "; the tables' end values are taken for it");
-        }
-    }
-    return said;
-}
-
 void PitchRun::plant_rate(std::size_t k, double t, const MotionState& y, ContactState bearing, MotionState& dydt,
                           const MotionLoads& loads) {
     Surroundings around = inputs_.at(t);

@@ -48,8 +48,6 @@ public:
     [[nodiscard]] std::optional<MotionStart> start(const MotionReadings& readings, std::size_t from,
                                                    std::size_t last) const override;
     [[nodiscard]] std::size_t free_rows() const override;
-    /// Outliers, and gaps at the end of the sensor's range; gaps outside the tables of the model are said.
-    std::vector<std::string> clean_readings(const std::string& name, const Model& model) override;
 
 private:
     void plant_rate(std::size_t k, double t, const MotionState& y, ContactState bearing, MotionState& dydt,

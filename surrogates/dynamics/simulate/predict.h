@@ -50,7 +50,7 @@ struct Prediction {
                         ///< gap_predicted, ...
     std::vector<ChannelError> channels;
     bool time_series = false;
-    std::string motion = "heave";           ///< of a time series: heave, heave_pitch, surface
+    std::string motion = "heave";           ///< of a time series: heave, heave_pitch, surface, body
     double horizon = 0;                     ///< s, of the windows: as asked for, less where no run is as long
     std::size_t windows = 0, diverged = 0;  ///< windows in all, and those that leave every bound (time series)
     std::string input_between;  ///< "held" or "linear": how the input was read between its samples; empty: none varies

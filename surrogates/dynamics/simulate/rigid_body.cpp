@@ -5,7 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
-#include "surrogates/dynamics/plant/pitch_effects.h"
+#include "surrogates/dynamics/plant/acting_jets.h"
 
 namespace underbody::dynamics {
 
@@ -30,7 +30,6 @@ RigidBody::RigidBody(const Model& declared, const Conditions& held, const std::v
     : model_(declared.resolved()),
       held_(held.over(declared.conditions)),
       vertical_(vertical_channel(model_, held_, varying)) {
-    refuse_pitch_effects(model_, vertical_.terms, "the motion of the whole body");
     const Vehicle& v = model_.vehicle;
     mass_x_ = v.mass + v.added_mass_surge;
     mass_y_ = v.mass + v.added_mass_sway;
@@ -46,6 +45,21 @@ RigidBody::RigidBody(const Model& declared, const Conditions& held, const std::v
     buoyancy_ = v.mass * model_.environment.gravity - v.net_weight;
     buoyancy_centre_ = v.buoyancy_centre();
     contact_gap_ = vertical_.terms.contact_gap;
+    inertia_[1][1] += vertical_.terms.pitch.inertia;
+    if (!(inertia_[1][1] > 0)) {
+        throw core::InputError("range", "the inertia in pitch is not positive", {model_.name, {}, {}, {}},
+                               "vehicle.pitch_inertia + vehicle.added_inertia_pitch + effects must be positive");
+    }
+    model_.contact.friction = std::max(0.0, model_.contact.friction + vertical_.terms.surface.friction);
+    acting_ = acting_jets(model_.jets, vertical_.terms.surface);
+    const std::array<double, 2> offset = mass_offset();  // all places are from the centre of gravity
+    for (std::size_t axis = 0; axis < offset.size(); ++axis) {
+        base_[axis] -= offset[axis];
+        buoyancy_centre_[axis] -= offset[axis];
+        for (Jet& jet : acting_) {
+            jet.position[axis] -= offset[axis];
+        }
+    }
     std::vector<Channel> all = varying;
     for (const Channel state :
          {Channel::gap, Channel::heave_velocity, Channel::pitch, Channel::pitch_rate, Channel::speed}) {
@@ -105,7 +119,7 @@ double RigidBody::gap_at_base_centre(const BodyState& y) const {
 
 double RigidBody::rise_of_base(const BodyState& y) const {
     const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
-    return -world_velocity(y)[2] + (base_[2] * st + base_[0] * ct) * y[state_q];
+    return y[state_u] * st - y[state_w] * ct + (base_[2] * st + base_[0] * ct) * y[state_q];
 }
 double RigidBody::down_velocity_for(double heave_velocity, const BodyState& y) const {
     const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
@@ -138,7 +152,10 @@ Conditions RigidBody::seen(const BodyState& y, const Surroundings& around) const
 }
 
 RigidBody::TableLoads RigidBody::table_loads(const BodyState& y, const Surroundings& around) const {
-    Conditions conditions = seen(y, around);
+    return table_loads(seen(y, around));
+}
+
+RigidBody::TableLoads RigidBody::table_loads(Conditions conditions) const {
     const double forward = conditions[Channel::speed];
     conditions[Channel::speed] = std::abs(forward);
     // Drag turns with the motion, smoothly through rest.
@@ -160,6 +177,24 @@ bool RigidBody::outside_tables(const BodyState& y) const {
     return false;
 }
 
+void RigidBody::add_effects(const BodyState& y, double input, double gap, Loads& loads) const {
+    const double st = std::sin(y[state_theta]), ct = std::cos(y[state_theta]);
+    const SurfaceTerms& terms = vertical_.terms.surface;
+    double ahead = 0, aside = 0;
+    if (terms.pull_x != 0 || terms.pull_y != 0) {
+        const double cp = std::cos(y[state_psi]), sp = std::sin(y[state_psi]);
+        ahead = terms.pull_x * cp + terms.pull_y * sp;
+        aside = terms.pull_y * cp - terms.pull_x * sp;
+    }
+    loads.add({0, -terms.mass_aside, 0}, {ahead * ct - terms.surge * y[state_u], 0, ahead * st});
+    loads.add({}, {0, aside - terms.sway * y[state_v], 0});
+    loads.moment[2] += terms.moment - terms.yaw * y[state_r];
+    double up = 0;
+    vertical_.terms.pitch.add_loads(gap, y[state_theta], y[state_q], input * (1 - vertical_.terms.thrust_lost(gap)),
+                                    base_[0] * ct + base_[2] * st, up, loads.moment[1]);
+    loads.add({}, {up * st, 0, -up * ct});
+}
+
 void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, const Surroundings& around,
                            Loads& loads) const {
     const double u = y[state_u], v = y[state_v], w = y[state_w], q = y[state_q], r = y[state_r];
@@ -167,12 +202,12 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     // Forces along the ground in the heading, and up, in body axes.
     const auto along = [&](double f) { return Vector3{f * ct, 0, f * st}; };
     const auto up = [&](double f) { return Vector3{f * st, 0, -f * ct}; };
-    const Wrench jets = jet_wrench(model_.jets, thrust);
+    const Wrench jets = jet_wrench(acting_, thrust);
     loads.force = jets.force;
     loads.moment = jets.moment;
     Conditions conditions = seen(y, around);
+    const TableLoads tables = table_loads(conditions);
     conditions[Channel::speed] = std::abs(conditions[Channel::speed]);
-    const TableLoads tables = table_loads(y, around);
     loads.add(base_, up(tables.lift));
     loads.add(base_, along(-tables.drag));
     loads.add(base_, {0, side_(conditions), 0});
@@ -180,7 +215,7 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     loads.moment[1] += tables.moment;
     loads.moment[2] += yaw_moment_(conditions);
     // Weight less buoyancy and the effects act at the centre of gravity; buoyancy off it turns the body.
-    const double gap = conditions[Channel::gap], rise = -world_velocity(y)[2];
+    const double gap = conditions[Channel::gap], rise = u * st - w * ct;
     const HeaveMoment moment{around.t, std::isnan(around.input) ? vertical_.held_input() : around.input, nullptr,
                              conditions.value.data()};
     loads.add({}, up(vertical_.other_force(gap, rise, moment, around.memory) + vertical_.wave_force(around.t)));
@@ -192,9 +227,11 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     const Environment& water = model_.environment;
     const double current = vertical_.terms.current;
     const double drag_u = drag(model_.drag_surge, water, u - current * st);
-    loads.add({}, {-drag_u, -drag(model_.drag_sway, water, v), -vertical_.water_drag(w + current * ct)});
+    loads.add({0, -mass_offset()[1], 0}, {-drag_u, 0, 0});
+    loads.add({}, {0, -drag(model_.drag_sway, water, v), -vertical_.water_drag(w + current * ct)});
     loads.moment[1] += model_.vehicle.drag_height * drag_u - drag(model_.drag_pitch, water, q);
     loads.moment[2] -= drag(model_.drag_yaw, water, r);
+    add_effects(y, moment.input, gap, loads);
     // Added mass over the gap: its momentum changes with the gap, and the body is pushed where it is larger.
     double slope = 0;
     loads.mass_z = vertical_.inertia(gap, slope) + (around.memory ? vertical_.history_mass() : 0);
@@ -255,6 +292,21 @@ void RigidBody::accelerations(const BodyState& y, const Loads& loads, double* ou
     const double b1 = rest[1], b2 = rest[2] - tt * rest[0], determinant = a11 * a22 - a12 * a12;
     out[3] = (b1 * a22 - a12 * b2) / determinant;
     out[4] = (a11 * b2 - a12 * b1) / determinant;
+}
+
+std::array<double, 5> RigidBody::answer(const BodyState& y, const Wrench& wrench) const {
+    BodyState still = y;
+    for (const BodyStateIndex i : {state_u, state_v, state_w, state_q, state_r}) {
+        still[i] = 0;
+    }
+    Loads loads;
+    double slope = 0;
+    loads.force = wrench.force;
+    loads.moment = wrench.moment;
+    loads.mass_z = vertical_.inertia(gap_at_base_centre(y), slope);
+    std::array<double, 5> out{};
+    accelerations(still, loads, out.data());
+    return out;
 }
 
 std::array<double, 2> RigidBody::gap_accelerations(const BodyState& y, const double* a) const {

@@ -2,7 +2,8 @@
 // Body frame x forward, y starboard, z down, origin at the centre of gravity; world X forward, Y right, Z down with the
 // ground at Z = 0. Equations: docs/physics.md section 3.1 (Fossen; Kirchhoff's equations with a diagonal added mass and
 // a full inertia tensor, projected onto the motions that keep roll at zero, which is the roll-constraint moment). Heave
-// added mass may follow the gap; effects of the model act upward at the centre of gravity.
+// added mass may follow the gap. Effects of the heave channel act upward at the centre of gravity; those on the pitch
+// (PitchTerms) and along and across the body (SurfaceTerms) act as in the motions that have only these.
 #pragma once
 
 #include <array>
@@ -38,6 +39,9 @@ public:
     /// One thrust a jet, N. `bearing`: the edges of the base that are held on the ground.
     void rate(const BodyState& y, std::span<const double> thrust, ContactState bearing, BodyState& dydt,
               const Surroundings& around = {}) const;
+    /// What a force and a moment about the centre of gravity (body axes) add to the rates of u, v, w, q, r, whatever
+    /// else acts; in free water.
+    [[nodiscard]] std::array<double, 5> answer(const BodyState& y, const Wrench& wrench) const;
     /// Normal forces at the nose and the tail edge, N.
     [[nodiscard]] std::array<double, 2> normal_forces(const BodyState& y, std::span<const double> thrust,
                                                       ContactState bearing, const Surroundings& around = {}) const;
@@ -63,6 +67,14 @@ public:
     [[nodiscard]] double roll_rate(const BodyState& y) const;
     /// World velocity of the centre of gravity.
     [[nodiscard]] static Vector3 world_velocity(const BodyState& y);
+    /// From the centre of gravity, body axes.
+    [[nodiscard]] const Vector3& base_centre() const { return base_; }
+    /// How far the centre of gravity lies forward and to starboard of the declared one (effects of the model), m.
+    [[nodiscard]] std::array<double, 2> mass_offset() const {
+        return {vertical_.terms.pitch.mass_forward, vertical_.terms.surface.mass_aside};
+    }
+    [[nodiscard]] double contact_gap() const { return contact_gap_; }
+    [[nodiscard]] double half_length() const { return half_length_; }
     /// Z of the centre of gravity with the base's centre at this gap and this pitch.
     [[nodiscard]] double height_for_gap(double gap, double theta) const;
     /// Force up, aft and moment nose up of the force tables, about the centre of the base.
@@ -83,6 +95,9 @@ public:
 private:
     struct Loads;
     [[nodiscard]] Conditions seen(const BodyState& y, const Surroundings& around) const;
+    [[nodiscard]] TableLoads table_loads(Conditions seen) const;
+    /// Effects on the pitch, and along and across the body.
+    void add_effects(const BodyState& y, double input, double gap, Loads& loads) const;
     void free_loads(const BodyState& y, std::span<const double> thrust, const Surroundings& around, Loads& loads) const;
     [[nodiscard]] Vector3 edge_place(std::size_t edge) const {
         return {base_[0] + (edge == 0 ? half_length_ : -half_length_), base_[1], base_[2]};
@@ -94,6 +109,7 @@ private:
     [[nodiscard]] ContactProblem problem(const BodyState& y, const Loads& loads, double friction) const;
     [[nodiscard]] std::array<double, 2> gap_accelerations(const BodyState& y, const double* out) const;
     Model model_;
+    std::vector<Jet> acting_;  ///< the model's jets as they act
     Conditions held_;
     HeavePlant vertical_;
     ForceSources lift_, drag_, side_, roll_moment_, pitch_moment_, yaw_moment_;
@@ -102,6 +118,12 @@ private:
     Vector3 base_{}, buoyancy_centre_{};
     double buoyancy_ = 0, half_length_ = 0, contact_gap_ = 0;
 };
+
+/// Edges of the base on the ground that do not leave it.
+ContactState touching_edges(const RigidBody& body, const BodyState& y);
+/// Puts edges that are in the ground onto it, and carries out the impact if one strikes: the edges on the ground then;
+/// free: none strikes.
+ContactState strike(const RigidBody& body, BodyState& y);
 
 struct BodyTrajectory {
     std::vector<double> time;

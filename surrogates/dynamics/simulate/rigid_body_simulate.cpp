@@ -56,15 +56,6 @@ private:
         stuck_ = 0;
         jets_.sample(t, body_of(y.data()));
     }
-    /// Edges on the ground that do not leave it.
-    ContactState touching(const BodyState& y) const {
-        const std::array<double, 2> gaps = body_.edge_gaps(y), speeds = body_.edge_speeds(y);
-        int bits = 0;
-        for (std::size_t e = 0; e < 2; ++e) {
-            bits |= gaps[e] <= touching_gap * 10 && speeds[e] <= touching_speed ? 1 << e : 0;
-        }
-        return static_cast<ContactState>(bits);
-    }
     /// Impacts if an edge strikes, then the contact state from here on.
     void land(double t, std::vector<double>& y);
 
@@ -95,25 +86,14 @@ void BodyFlight::record(double t, const double* y) {
 
 void BodyFlight::land(double t, std::vector<double>& y) {
     BodyState state = body_of(y.data());
-    // Edges at or below the ground are put on it exactly.
-    const std::array<double, 2> gaps = body_.edge_gaps(state);
-    const double deepest = std::min(gaps[0], gaps[1]);
-    if (deepest < touching_gap * 10) {
-        state[state_z] += std::min(deepest, 0.0);
-    }
-    const std::array<double, 2> speeds = body_.edge_speeds(state);
-    int struck = 0;
-    for (std::size_t e = 0; e < 2; ++e) {
-        struck |= body_.edge_gaps(state)[e] <= touching_gap * 10 ? 1 << e : 0;
-    }
-    const bool strikes = ((struck & 1) && speeds[0] < -touching_speed) || ((struck & 2) && speeds[1] < -touching_speed);
+    const ContactState struck = strike(body_, state);
+    const bool strikes = struck != ContactState::free;
     if (strikes) {
-        state = body_.impact(state, static_cast<ContactState>(struck));
-        out_.events.push_back({t, std::string("impact ") + contact_state_name(static_cast<ContactState>(struck))});
+        out_.events.push_back({t, std::string("impact ") + contact_state_name(struck)});
     }
     std::copy(state.begin(), state.end(), y.begin());
     const std::vector<double> thrust = thrusts(t, y.data());
-    const ContactState next = body_.settle(state, thrust, touching(state), around(t, y.data()));
+    const ContactState next = body_.settle(state, thrust, touching_edges(body_, state), around(t, y.data()));
     if (next != bearing_ || strikes) {
         out_.events.push_back({t, contact_state_name(next)});
     }
@@ -199,6 +179,34 @@ void BodyFlight::fly(const BodyState& start, double t0, core::Progress& progress
 }
 
 }  // namespace
+
+ContactState touching_edges(const RigidBody& body, const BodyState& y) {
+    const std::array<double, 2> gaps = body.edge_gaps(y), speeds = body.edge_speeds(y);
+    int bits = 0;
+    for (std::size_t e = 0; e < 2; ++e) {
+        bits |= gaps[e] <= touching_gap * 10 && speeds[e] <= touching_speed ? 1 << e : 0;
+    }
+    return static_cast<ContactState>(bits);
+}
+
+ContactState strike(const RigidBody& body, BodyState& y) {
+    // Edges at or below the ground are put on it exactly.
+    const std::array<double, 2> gaps = body.edge_gaps(y);
+    const double deepest = std::min(gaps[0], gaps[1]);
+    if (deepest < touching_gap * 10) {
+        y[state_z] += std::min(deepest, 0.0);
+    }
+    const std::array<double, 2> speeds = body.edge_speeds(y);
+    int struck = 0;
+    for (std::size_t e = 0; e < 2; ++e) {
+        struck |= body.edge_gaps(y)[e] <= touching_gap * 10 ? 1 << e : 0;
+    }
+    const bool strikes = ((struck & 1) && speeds[0] < -touching_speed) || ((struck & 2) && speeds[1] < -touching_speed);
+    if (strikes) {
+        y = body.impact(y, static_cast<ContactState>(struck));
+    }
+    return strikes ? static_cast<ContactState>(struck) : ContactState::free;
+}
 
 BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, const JetCommand& command,
                              const BodyOptions& options, core::Progress& progress, const InputSignals& inputs) {

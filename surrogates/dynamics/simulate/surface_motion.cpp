@@ -6,14 +6,15 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
+#include "surrogates/dynamics/plant/acting_jets.h"
 
 namespace underbody::dynamics {
 
 SurfaceMotion::SurfaceMotion(const Model& declared, const Conditions& held, const std::vector<Channel>& varying)
     : model_(declared.resolved()),
-      acting_(model_.jets),
       held_(held.over(declared.conditions)),
-      vertical_(vertical_channel(model_, held_, varying)) {
+      vertical_(vertical_channel(model_, held_, varying)),
+      acting_(acting_jets(model_.jets, vertical_.terms.surface)) {
     const Vehicle& v = model_.vehicle;
     if (std::isnan(v.yaw_inertia)) {
         throw core::InputError("missing", "surface motion needs vehicle.yaw_inertia", {model_.name, {}, {}, {}});
@@ -21,13 +22,6 @@ SurfaceMotion::SurfaceMotion(const Model& declared, const Conditions& held, cons
     mass_x_ = v.mass + v.added_mass_surge;
     mass_y_ = v.mass + v.added_mass_sway;
     inertia_ = v.yaw_inertia + v.added_inertia_yaw;
-    const SurfaceTerms& effects = vertical_.terms.surface;
-    for (Jet& jet : acting_) {
-        const double c = std::cos(effects.jet_angle), s = std::sin(effects.jet_angle), along = jet.direction[0],
-                     across = jet.direction[1];
-        jet.direction = {effects.thrust_gain * (c * along - s * across), effects.thrust_gain * (s * along + c * across),
-                         effects.thrust_gain * jet.direction[2]};
-    }
     gap_ = vertical_.terms.contact_gap;
     base_ = v.base_centre();
     base_[2] = std::isnan(base_[2]) ? 0 : base_[2];

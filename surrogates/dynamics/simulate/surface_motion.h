@@ -56,9 +56,9 @@ private:
     [[nodiscard]] Loads loads(const SurfaceState& y, std::span<const double> thrust, const Surroundings& around) const;
     [[nodiscard]] Contact contact(const SurfaceState& y, const Loads& loads) const;
     Model model_;
-    std::vector<Jet> acting_;  ///< as effects of the model gain and turn them
     Conditions held_;
     HeavePlant vertical_;
+    std::vector<Jet> acting_;  ///< as effects of the model gain and turn them
     ForceSources lift_, drag_, side_, pitch_moment_, yaw_moment_;
     double mass_x_ = 0, mass_y_ = 0, inertia_ = 0, gap_ = 0, buoyancy_moment_ = 0;
     double nose_ = 0, tail_ = 0;

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
-#include "surrogates/dynamics/simulate/predict.h"
-#include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
 namespace underbody::dynamics {
@@ -16,49 +12,24 @@ namespace {
 
 enum Index { place_x, place_y, heading, surge, sway, turn };
 
-/// The inputs of a run without its states, and without the gap and pitch that a body on the ground has.
-InputSignals ground_inputs(const MeasuredRun& run, const RecordReading& records) {
-    InputSignals signals = signals_of(run, records);
-    std::erase_if(signals.signals, [](const InputSignals::Signal& signal) {
-        return signal.channel == Channel::speed || signal.channel == Channel::gap || signal.channel == Channel::pitch ||
-               signal.channel == Channel::heave_velocity || signal.channel == Channel::pitch_rate;
-    });
-    return signals;
-}
-
-/// A heading that jumps by a turn goes on.
-void unwrap(std::vector<double>& angle) {
-    constexpr double turn_round = 2 * std::numbers::pi;
-    double last = std::nan(""), added = 0;
-    for (double& value : angle) {
-        const double read = value;
-        if (std::isfinite(read) && std::isfinite(last)) {
-            added -= turn_round * std::round((read - last) / turn_round);
-        }
-        last = std::isfinite(read) ? read : last;
-        value += added;
-    }
-}
-
 SurfaceState plant_state(const MotionState& y) {
     return {y[surge], y[sway], y[turn], y[heading], y[place_x], y[place_y]};
 }
 
-constexpr const char* of_thrust = "thrust_";
-std::string thrust_column(const Jet& jet) { return of_thrust + jet.name; }
-
 }  // namespace
 
 MeasuredSurface::MeasuredSurface(const Model& model, const MeasuredRun& run, const RecordReading& records)
-    : signals_(ground_inputs(run, records)),
+    : signals_(inputs_of_body(run, records)),
       motion_(model, signals_.held, varying_channels(signals_)),
       inputs_(motion_.vertical(), signals_),
-      acting_(motion_.jets().size(), 0.0),
-      linear_(records.input_between == RecordReading::Between::linear) {
+      thrusts_(model, run, records.input_between == RecordReading::Between::linear) {
     constexpr double of_stability = 1.5;  // the rule of Runge and Kutta bears 2.8 times the time constant of the slip
-    read_thrusts(model, run);
+    if (model.jets.empty()) {
+        throw core::InputError("missing", "runs on the ground need the jets that drive them", {model.name, {}, {}, {}},
+                               "declare them: [[jet]] name = ..., position, direction, maximum");
+    }
     const double friction = model.contact.friction + std::max(0.0, motion_.vertical().terms.surface.friction);
-    const double pressed = std::abs(motion_.contact({}, acting_).normal) + 1e-9;
+    const double pressed = std::abs(motion_.contact({}, std::vector<double>(model.jets.size(), 0.0)).normal) + 1e-9;
     const double fastest =
         friction * pressed / model.contact.slip_speed / std::min(motion_.inertias()[0], motion_.inertias()[1]);
     longest_step_ = std::clamp(of_stability / std::max(fastest, 1e-9), 5e-4, longest_step_);
@@ -76,79 +47,10 @@ MeasuredSurface::MeasuredSurface(const Model& model, const MeasuredRun& run, con
     unwrap(readings_.value[heading]);
 }
 
-void MeasuredSurface::read_thrusts(const Model& model, const MeasuredRun& run) {
-    const core::Place whole{run.table.source, {}, {}, {}};
-    std::vector<std::string> given, of_jets;
-    for (const core::Column& column : run.table.columns()) {
-        if (column.name.starts_with(of_thrust)) {
-            given.push_back(column.name);
-        }
-    }
-    for (const Jet& jet : motion_.jets()) {
-        of_jets.push_back(thrust_column(jet));
-        const core::Column* column = run.table.find(of_jets.back());
-        if (column == nullptr) {
-            throw core::InputError("missing", "run " + run.name + " lacks the thrust of the jet '" + jet.name + "'",
-                                   whole,
-                                   "a column " + of_jets.back() + " [N], the thrust as it acted; 0 where it is off" +
-                                       (given.empty() ? "" : "; " + core::did_you_mean(of_jets.back(), given)));
-        }
-        if (column->is_text() || column->unit != "N") {
-            throw core::InputError(
-                "unit",
-                "the thrust " + column->name + " is in " + (column->is_text() ? "words" : "'" + column->unit + "'"),
-                run.table.place(0, column->name), "a force: " + column->name + " [N]");
-        }
-        thrust_.push_back(column->numbers);
-        double last = 0, most = 0;
-        for (double& value : thrust_.back()) {
-            last = std::isfinite(value) ? value : last;
-            value = last;
-            most = value > 1.01 * jet.maximum + 1e-9 || value < 1.01 * jet.minimum - 1e-9
-                       ? std::max(most, std::abs(value))
-                       : most;
-        }
-        if (most > 0) {
-            of_thrusts_.push_back("run " + run.name + ": " + column->name + " reaches " + core::format_number(most, 3) +
-                                  " N, while the jet is declared for " + core::format_number(jet.minimum, 3) + " to " +
-                                  core::format_number(jet.maximum, 3) +
-                                  " N: its unit, or the jet's minimum and maximum in the model, are others");
-        }
-    }
-    for (const std::string& name : given) {
-        if (std::find(of_jets.begin(), of_jets.end(), name) == of_jets.end()) {
-            of_thrusts_.push_back("run " + run.name + ": the column " + name + " is not used: the model has no jet '" +
-                                  name.substr(std::string(of_thrust).size()) + "'");
-        }
-    }
-    if (thrust_.empty()) {
-        throw core::InputError("missing", "runs on the ground need the jets that drive them", {model.name, {}, {}, {}},
-                               "declare them: [[jet]] name = ..., position, direction, maximum");
-    }
-}
-
-std::vector<std::string> MeasuredSurface::clean_readings(const std::string& name, const Model& /*model*/) {
-    std::vector<std::string> said = of_thrusts_;
-    for (std::size_t i = 0; i < shape().states.size(); ++i) {
-        std::vector<double>& values = readings_.value[i];
-        if (values.empty()) {
-            continue;
-        }
-        const double own = sensor_noise(time(), values);
-        if (const std::size_t outliers = drop_outliers(values, std::max(own, 1e-9)); outliers > 0) {
-            said.push_back(outliers_text(name, outliers, shape().states[i].channel));
-        }
-    }
-    return said;
-}
-
 void MeasuredSurface::rate(std::size_t k, double t, const MotionState& y, MotionState& dydt, const MotionLoads& loads) {
-    const double width = time()[k + 1] - time()[k], part = linear_ ? (t - time()[k]) / width : 0;
-    for (std::size_t j = 0; j < acting_.size(); ++j) {
-        acting_[j] = thrust_[j][k] + (part > 0 ? part * (thrust_[j][k + 1] - thrust_[j][k]) : 0);
-    }
+    const double part = (t - time()[k]) / (time()[k + 1] - time()[k]);
     SurfaceState d{};
-    motion_.rate(plant_state(y), acting_, d, inputs_.at(t));
+    motion_.rate(plant_state(y), thrusts_.at(k, part), d, inputs_.at(t));
     const std::array<double, 3> inertia = motion_.inertias();
     dydt = {d[4], d[5], d[3], d[0] + loads[0] / inertia[0], d[1] + loads[1] / inertia[1], d[2] + loads[2] / inertia[2]};
 }
@@ -219,7 +121,7 @@ public:
     }
     [[nodiscard]] bool driven(const Model& model, const MeasuredRun& run) const override {
         return std::any_of(model.jets.begin(), model.jets.end(),
-                           [&](const Jet& jet) { return column_moves(run, thrust_column(jet)); });
+                           [&](const Jet& jet) { return column_moves(run, RecordedThrusts::column(jet)); });
     }
 };
 

@@ -3,6 +3,7 @@
 
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/simulate/measured_motion.h"
+#include "surrogates/dynamics/simulate/recorded_thrusts.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
 
 namespace underbody::dynamics {
@@ -28,17 +29,15 @@ public:
     [[nodiscard]] std::optional<MotionStart> start(const MotionReadings& readings, std::size_t from,
                                                    std::size_t last) const override;
     [[nodiscard]] std::size_t free_rows() const override { return time().size(); }
-    std::vector<std::string> clean_readings(const std::string& name, const Model& model) override;
+    std::vector<std::string> clean_readings(const std::string& name, const Model& model) override {
+        return clean_after(thrusts_.remarks(), name, model);
+    }
 
 private:
-    void read_thrusts(const Model& model, const MeasuredRun& run);
     InputSignals signals_;
     SurfaceMotion motion_;
     RecordedInputs inputs_;
-    std::vector<std::vector<double>> thrust_;  ///< of each jet, row by row
-    std::vector<double> acting_;               ///< of each jet, at a moment
-    std::vector<std::string> of_thrusts_;      ///< what is said of their columns
-    bool linear_ = false;
+    RecordedThrusts thrusts_;
     double longest_step_ = 0.02;  ///< s
 };
 

@@ -77,6 +77,10 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
         throw core::InputError("kind", "the estimator needs time series; this data set is static",
                                {data.folder.string(), {}, {}, {}}, "static forces are compared by 'underbody predict'");
     }
+    if (data.motion == "body") {
+        throw core::InputError("motion", "estimates are of heave: these runs are of the whole body, driven by its jets",
+                               {data.folder.string(), {}, {}, {}}, "predict and discover follow them");
+    }
     const dynamics::InputReading reading = dynamics::input_reading(model, data);
     if (const std::string read = dynamics::reading_text(reading.records); !read.empty()) {
         note(remarks, "logs read as " + read + " (" +

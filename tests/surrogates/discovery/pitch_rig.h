@@ -31,8 +31,8 @@ struct PitchBody {
     double heave_linear = 0.05, heave_quadratic = 6, pitch_linear = 0.004, pitch_quadratic = 0.01;
 };
 
-/// The declared model in a folder: model.toml and tables.csv.
-inline dynamics::Model pitch_rig_model(const std::filesystem::path& folder) {
+/// tables.csv: lift and moment over gap and pitch.
+inline void write_pitch_tables(const std::filesystem::path& folder) {
     std::string table = "gap [m], pitch [rad], lift_force [N], pitch_moment [N m]\n";
     for (int k = 0; k <= 60; ++k) {
         const double h = 0.02 + 0.6 * std::pow(k / 60.0, 2);
@@ -44,6 +44,11 @@ inline dynamics::Model pitch_rig_model(const std::filesystem::path& folder) {
         }
     }
     core::write_file(folder / "tables.csv", table);
+}
+
+/// The declared model in a folder: model.toml and tables.csv.
+inline dynamics::Model pitch_rig_model(const std::filesystem::path& folder) {
+    write_pitch_tables(folder);
     core::write_file(folder / "model.toml",
                      "[vehicle]\nmass = \"2.2 kg\"\nadded_mass_heave = \"1.754 kg\"\nnet_weight = \"0.03 N\"\n"
                      "pitch_inertia = \"0.006855 kg m^2\"\nadded_inertia_pitch = \"0.000509 kg m^2\"\n"

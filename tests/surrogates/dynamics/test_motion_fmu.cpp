@@ -723,6 +723,25 @@ TEST(MotionFmu, SaysWhatItCannotCarry) {
     EXPECT_EQ(first, core::read_file(folder.path() / "m.fmu")) << "the same model must give the same bytes";
 }
 
+TEST(MotionFmu, RefusesEffectsThatItsCodeDoesNotKnow) {
+    core::TemporaryFolder folder("fmu-effects");
+    MotionFmuOptions options;
+    options.motion = FmuMotion::body;
+    const Model vehicle = read_model_text(
+        "[vehicle]\nmass = 2\nnet_weight = 1\nroll_inertia = 0.01\npitch_inertia = 0.01\nyaw_inertia = 0.01\n"
+        "base_depth = 0.03\nbase_half_length = 0.05\n",
+        "body.toml", ".");
+    for (const char* effect : {"moment_offset", "yaw_moment_offset"}) {
+        try {
+            export_motion_fmu(vehicle.with_effect(make_use(effect, {{"moment", 0.001}})), folder.path() / "a.fmu",
+                              options);
+            FAIL() << effect << " would be left out in silence";
+        } catch (const core::InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(effect), std::string::npos) << error.what();
+        }
+    }
+}
+
 }  // namespace
 
 }  // namespace underbody::dynamics

@@ -105,10 +105,52 @@ TEST(PitchEffects, InertiaDividesAndMustStayPositive) {
                  core::InputError);
 }
 
-TEST(PitchEffects, TheWholeBodyRefusesThem) {
-    EXPECT_NO_THROW(RigidBody(bare(), {}, {}));
-    EXPECT_THROW(RigidBody(bare().with_effect(make_use("moment_offset", {{"moment", 0.001}})), {}, {}),
+/// Accelerations du, dv, dw, dq, dr of the whole body.
+std::array<double, 5> body_rates(const Model& model, const BodyState& y, const std::vector<double>& thrust) {
+    const RigidBody body(model);
+    BodyState d{};
+    Surroundings around;
+    around.input = 0.04;
+    body.rate(y, thrust, ContactState::free, d, around);
+    return {d[0], d[1], d[2], d[3], d[4]};
+}
+
+TEST(PitchEffects, ActOnTheWholeBodyAsInHeaveWithPitch) {
+    BodyState y{};
+    y[state_theta] = state[2];
+    y[state_q] = state[3];
+    y[state_z] = RigidBody(bare()).height_for_gap(state[0], state[2]);
+    for (const EffectUse& use : {make_use("pitch_damping", {{"coefficient", 0.003}}),
+                                 make_use("pitch_quadratic_damping", {{"coefficient", 0.02}}),
+                                 make_use("pitch_stiffness", {{"stiffness", 0.02}}),
+                                 make_use("moment_offset", {{"moment", 0.001}}), make_use("input_arm", {{"arm", 0.01}}),
+                                 make_use("tether_with_arm", {{"stiffness", 1.5}, {"gap", 0.1}, {"arm", 0.04}})}) {
+        const std::array<double, 5> before = body_rates(bare(), y, {}),
+                                    after = body_rates(bare().with_effect(use), y, {});
+        const Added one = added(use, state, 0.04);
+        EXPECT_NEAR(inertia * (after[3] - before[3]), one.moment, 1e-13) << use.name;
+        EXPECT_NEAR(mass * (after[2] - before[2]), -one.force * std::cos(state[2]), 1e-13) << use.name;
+        EXPECT_NEAR(after[4], before[4], 1e-13) << use.name;
+    }
+    EXPECT_THROW(RigidBody(bare().with_effect(make_use("added_pitch_inertia", {{"inertia", -0.0074}}))),
                  core::InputError);
+}
+
+TEST(PitchEffects, AShiftedCentreOfGravityOfTheWholeBodyIsADeclaredOne) {
+    const auto jet = [](const char* place) {
+        return std::string("[[jet]]\nname = \"a\"\nposition = ") + place +
+               "\ndirection = [0.6, 0, -0.8]\nmaximum = 1\n";
+    };
+    const std::string centres = "centre_of_buoyancy = [0, 0, 0]\n";
+    const Model declared = bare(jet("[0.05, 0.02, 0]"), "centre_of_gravity = [0, 0, 0.02]\n" + centres);
+    const Model moved = bare(jet("[0.046, 0.017, 0]"), "centre_of_gravity = [0.004, 0.003, 0.02]\n" + centres);
+    const Model found = declared.with_effect(make_use("mass_centre_offset", {{"distance", 0.004}}))
+                            .with_effect(make_use("mass_centre_aside", {{"offset", 0.003}}));
+    const BodyState y{0.3, 0.05, -0.02, 0.2, 0.4, 0.1, 0.7, 0, 0, -0.2};
+    const std::array<double, 5> a = body_rates(moved, y, {0.3}), b = body_rates(found, y, {0.3});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        EXPECT_NEAR(a[i], b[i], 1e-12) << i;
+    }
 }
 
 }  // namespace

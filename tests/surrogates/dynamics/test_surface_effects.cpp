@@ -58,6 +58,32 @@ TEST(SurfaceEffects, AddWhatTheirFormulasSay) {
     expect_added(make_use("mass_centre_aside", {{"offset", 0.005}}), y, 0, 0, 0.005 * (0.4 - rub * 0.3));
 }
 
+TEST(SurfaceEffects, ActOnTheWholeBodyToo) {
+    const auto body = [](const Model& model) {
+        const RigidBody plant(model);
+        BodyState y{0.3, -0.1, 0, 0, 0.7, 0, 0.5, 0, 0, -1}, d{};
+        plant.rate(y, std::vector<double>{0.4, 0.1}, ContactState::free, d);
+        return d;
+    };
+    const Model whole = rig()
+                            .with_parameter("vehicle.roll_inertia", 0.01)
+                            .with_parameter("vehicle.pitch_inertia", 0.01)
+                            .with_parameter("vehicle.base_depth", 0.03)
+                            .with_parameter("vehicle.base_half_length", 0.05);
+    const SurfaceState y{0.3, -0.1, 0.7, 0.5, 0, 0};
+    for (const EffectUse& use :
+         {make_use("surge_damping", {{"coefficient", 0.2}}), make_use("sway_damping", {{"coefficient", 0.2}}),
+          make_use("yaw_damping", {{"coefficient", 0.02}}), make_use("yaw_moment_offset", {{"moment", 0.003}}),
+          make_use("thrust_gain", {{"gain", 1.1}}), make_use("jet_misalignment", {{"angle", 0.1}}),
+          make_use("cable_pull", {{"along", 0.05}, {"across", 0.02}})}) {
+        const BodyState before = body(whole), after = body(whole.with_effect(use));
+        const std::array<double, 3> own = added(use, y);
+        EXPECT_NEAR(2 * (after[state_u] - before[state_u]), own[0], 1e-9) << use.name;
+        EXPECT_NEAR(2 * (after[state_v] - before[state_v]), own[1], 1e-9) << use.name;
+        EXPECT_NEAR(0.01 * (after[state_r] - before[state_r]), own[2], 1e-9) << use.name;
+    }
+}
+
 TEST(SurfaceEffects, LeaveHeaveAsItIs) {
     const HeavePlant without(rig()), with(rig().with_effect(make_use("yaw_damping", {{"coefficient", 0.02}})));
     HeaveSlopes slopes;

@@ -1,0 +1,160 @@
+// Runs of the whole body: residual forces and moments in its axes, effects with their arms, predictions at the noise.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "body_rig.h"
+#include "core/file.h"
+#include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/residual.h"
+#include "surrogates/dynamics/simulate/predict.h"
+
+namespace underbody::discovery {
+
+namespace {
+
+using dynamics::make_use;
+using test::BodyLoads;
+using test::BodyMoment;
+using test::BodyRig;
+
+class BodyRuns : public testing::Test {
+protected:
+    void expect_at_noise(const dynamics::Model& model, const BodyRig& rig, std::size_t channels) const {
+        const dynamics::Prediction found = dynamics::predict(model, test::body_rig_runs(rig, 3, 61));
+        EXPECT_EQ(found.motion, "body");
+        ASSERT_EQ(found.channels.size(), channels);
+        for (const dynamics::ChannelError& channel : found.channels) {
+            EXPECT_LT(channel.in_noise, 1.4) << channel.name;
+            EXPECT_GT(channel.in_noise, 0.8) << channel.name;
+        }
+    }
+    core::TemporaryFolder folder_{"body"};
+    dynamics::Model model_ = test::body_rig_model(folder_.path());
+};
+
+TEST_F(BodyRuns, ACleanRigIsPredictedAtItsNoise) { expect_at_noise(model_, {}, 5); }
+
+TEST_F(BodyRuns, SpeedsAndRatesServeWherePlacesAlongTheGroundAndHeadingWereNotRead) {
+    BodyRig rig;
+    rig.rates_only = true;
+    expect_at_noise(model_, rig, 7);
+}
+
+/// The rig's law against the effect's: with the effect in the model what is left is noise, without it is not.
+struct Declared {
+    const char* name;
+    std::vector<dynamics::ParameterValue> values;
+    void (*change)(BodyRig& rig);
+};
+void PrintTo(const Declared& one, std::ostream* out) { *out << one.name; }
+
+class BodyEffects : public BodyRuns, public testing::WithParamInterface<Declared> {};
+
+TEST_P(BodyEffects, PredictAtTheNoiseWhatTheyAreIn) {
+    BodyRig rig;
+    GetParam().change(rig);
+    expect_at_noise(model_.with_effect(make_use(GetParam().name, GetParam().values)), rig, 5);
+    double worst = 0;
+    for (const dynamics::ChannelError& channel : dynamics::predict(model_, test::body_rig_runs(rig, 3, 61)).channels) {
+        worst = std::max(worst, channel.in_noise);
+    }
+    EXPECT_GT(worst, 2);
+}
+
+BodyLoads none() { return {}; }
+
+const std::vector<Declared> declared{
+    {"thrust_gain", {{"gain", 0.9}}, [](BodyRig& rig) { rig.thrust_gain = 0.9; }},
+    {"jet_misalignment", {{"angle", 0.05}}, [](BodyRig& rig) { rig.jet_angle = 0.05; }},
+    {"mass_centre_offset", {{"distance", 3e-4}}, [](BodyRig& rig) { rig.mass_forward = 3e-4; }},
+    {"mass_centre_aside", {{"offset", 0.01}}, [](BodyRig& rig) { rig.mass_aside = 0.01; }},
+    {"added_mass", {{"mass", 1}}, [](BodyRig& rig) { rig.added_mass = 1; }},
+    {"constant_force",
+     {{"force", 0.02}},
+     [](BodyRig& rig) {
+         rig.missing = [](const BodyMoment&) {
+             BodyLoads more = none();
+             more[2] = 0.02;
+             return more;
+         };
+     }},
+    {"cable_pull",
+     {{"along", 0.03}, {"across", 0.02}},
+     [](BodyRig& rig) {
+         rig.missing = [](const BodyMoment& now) {
+             const double c = std::cos(now.heading), s = std::sin(now.heading);
+             return BodyLoads{0.03 * c + 0.02 * s, 0.02 * c - 0.03 * s, 0, 0, 0};
+         };
+     }},
+    {"tether_with_arm",
+     {{"stiffness", 0.3}, {"gap", 0.2}, {"arm", 0.05}},
+     [](BodyRig& rig) {
+         rig.missing = [](const BodyMoment& now) {
+             const double pull = -0.3 * (now.gap + 0.05 * std::sin(now.pitch) - 0.2);
+             const double arm = 0.05 * std::cos(now.pitch) + 0.05 * std::sin(now.pitch);  // ahead, and the base's depth
+             return BodyLoads{0, 0, pull, arm * pull, 0};
+         };
+     }},
+    {"yaw_damping",
+     {{"coefficient", 0.01}},
+     [](BodyRig& rig) {
+         rig.missing = [](const BodyMoment& now) { return BodyLoads{0, 0, 0, 0, -0.01 * now.turn_rate}; };
+     }},
+    {"pitch_damping",
+     {{"coefficient", 0.02}},
+     [](BodyRig& rig) {
+         rig.missing = [](const BodyMoment& now) { return BodyLoads{0, 0, 0, -0.02 * now.nose_rate, 0}; };
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, BodyEffects, testing::ValuesIn(declared),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(BodyRuns, ResidualsAreInTheirAxes) {
+    const std::array<double, 5> sizes{0.03, 0.03, 0.02, 0.002, 0.002};
+    for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
+        BodyRig rig;
+        BodyLoads more{};
+        more[axis] = sizes[axis];
+        rig.missing = [more](const BodyMoment&) { return more; };
+        const std::vector<Residual> found = measured_residual(model_, test::body_rig_runs(rig, 3, 62));
+        ASSERT_EQ(found.size(), 5U);
+        for (std::size_t other = 0; other < sizes.size(); ++other) {
+            EXPECT_NEAR(found[other].mean, more[other], 0.1 * sizes[other]) << found[other].quantity << " of " << axis;
+        }
+    }
+}
+
+TEST_F(BodyRuns, SayWhatTheyLackAndWhatIsLeftOut) {
+    dynamics::Measurements data = test::body_rig_runs({}, 3, 63);
+    core::Table table;
+    for (const core::Column& column : data.runs[1].table.columns()) {
+        if (column.name != "heading") {
+            table.add_numbers(column.name, column.unit, column.numbers);
+        }
+    }
+    const core::Table whole = data.runs[1].table;
+    data.runs[1].table = table;
+    try {
+        dynamics::predict(model_, data);
+        FAIL() << "a run without heading and yaw rate is refused";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("run-2 of the whole body has no heading and no yaw_rate"));
+    }
+    data.runs[1].table = whole;
+    std::vector<double> roll(whole.rows(), 0.0);
+    roll[40] = -0.12;
+    data.runs[1].table.add_numbers("roll", "rad", roll);
+    bool said = false;
+    for (const core::Problem& one : dynamics::predict(model_, data).remarks) {
+        said = said || one.message.find("run-2: the roll reaches 6.88 deg") != std::string::npos;
+    }
+    EXPECT_TRUE(said);
+}
+
+}  // namespace
+
+}  // namespace underbody::discovery
