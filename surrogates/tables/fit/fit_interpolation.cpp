@@ -66,83 +66,76 @@ std::vector<double> left_out_misses(SlopeRule rule, const std::vector<double>& x
     return misses;
 }
 
-double root_mean_square(const std::vector<double>& inner) {
-    double square = 0;
-    for (const double v : inner) {
-        square += v * v;
-    }
-    return std::sqrt(square / static_cast<double>(inner.size() - 2));
+double mean_square(const std::vector<double>& v) {
+    return std::inner_product(v.begin(), v.end(), v.begin(), 0.0) / static_cast<double>(v.size());
 }
 
-/// With which power of the width of a cell the misses of a line shrink: from those of every other point against those
-/// of all. Smooth, well resolved data show 3 and 4, data with kinks 1.
-double order_of(SlopeRule rule, const std::vector<double>& x, const std::vector<double>& y,
-                const std::vector<double>& misses) {
-    if (x.size() < 7) {
-        return 2;
-    }
-    std::vector<double> wide_x, wide_y;
-    for (std::size_t i = 0; i < x.size(); i += 2) {
-        wide_x.push_back(x[i]);
-        wide_y.push_back(y[i]);
-    }
-    const double near = root_mean_square(misses), far = root_mean_square(left_out_misses(rule, wide_x, wide_y));
-    return near > 0 ? std::clamp(std::log2(far / near), 1.0, 4.0) : 4;
+/// With which power of the width of a cell the misses of a line shrink. The rule's own power is 4, at an extremum 2;
+/// few points do not resolve the force and show 1 like a kink, each point more 0.6 more. Noise is no smaller in narrow
+/// cells: where the scatter found in the points is a tenth of their misses and more, 0.75. The misses of every other
+/// point, against those of all, tell it worse: they are too few. Set on seeds 0 to 559 of the simulated forces in
+/// November 2026; what other powers and shares give: docs/adr/0009-own-interpolation.md.
+double order_of(const std::vector<double>& misses, const std::vector<double>& noise) {
+    const double of_points = std::clamp(0.6 * (static_cast<double>(misses.size()) - 3), 1.0, 3.5);
+    const double scatter = mean_square(noise), missed = mean_square(misses);
+    const double noisy = scatter > 0 ? std::min(1.0, 10 * std::sqrt(scatter / missed)) : 0;
+    return of_points + (0.75 - of_points) * noisy;
 }
 
-/// What left-out points are missed by sees cells of twice the width: this share of its square counts beside what the
-/// rules disagree by, `of_misses_alone` at least where the rules agree (noise that nobody stated). Set on seeds 0 to
-/// 559 of the simulated forces in November 2026; what other shares give: docs/adr/0009-own-interpolation.md.
-constexpr double of_misses = 0.3, of_misses_alone = 0.8;
+/// The share of the square of what left-out points are missed by that counts beside what the rules disagree by, which
+/// has seen a part of it.
+constexpr double of_misses = 0.5;
+
+/// The root of a square less what noise makes of it.
+double beyond_noise(double square, double of_noise) { return std::sqrt(std::max(0.0, square - of_noise)); }
+
+/// Of two points, whose line nothing tells to bend, and of three.
+std::vector<double> cell_errors_of_few(const std::vector<double>& x, const std::vector<double>& y) {
+    if (x.size() == 2) {
+        // Nothing tells how it bends between two points: as if the slope changed by its own size from end to end.
+        return {0.25 * std::abs(y[1] - y[0])};
+    }
+    // An eighth of the change of slope is what a parabola leaves a straight line.
+    const double bend = std::abs((y[2] - y[1]) / (x[2] - x[1]) - (y[1] - y[0]) / (x[1] - x[0]));
+    return {0.125 * (x[1] - x[0]) * bend, 0.125 * (x[2] - x[1]) * bend};
+}
 
 /// The standard error in the middle of each cell of a line; `noise` of its points is not counted here, for they carry
-/// it themselves.
+/// it themselves. Over neighbours and lines sizes are averaged, not squares: a band that holds two thirds follows the
+/// usual error, and the square of a few large ones made it too wide for all others.
 std::vector<double> cell_errors(SlopeRule rule, const std::vector<double>& x, const std::vector<double>& y,
                                 const std::vector<double>& noise) {
     const std::size_t n = x.size();
-    std::vector<double> error(n - 1, 0.0);
-    if (n < 3) {
-        // Nothing tells how it bends between two points: as if the slope changed by its own size from end to end.
-        error[0] = 0.25 * std::abs(y[1] - y[0]);
-        return error;
+    if (n < 4) {
+        return cell_errors_of_few(x, y);
     }
-    if (n == 3) {
-        // An eighth of the change of slope is what a parabola leaves a straight line.
-        const double bend = std::abs((y[2] - y[1]) / (x[2] - x[1]) - (y[1] - y[0]) / (x[1] - x[0]));
-        for (std::size_t cell = 0; cell < 2; ++cell) {
-            error[cell] = 0.125 * (x[cell + 1] - x[cell]) * bend;
-        }
-        return error;
-    }
-    const CubicGrid own({x}, y, rule);
-    const auto apart = disagreement(rule, own, x, y);
+    const auto apart = disagreement(rule, CubicGrid({x}, y, rule), x, y);
     const auto t = smooth_coordinate(x);
     const auto misses = left_out_misses(rule, x, y);
-    const double order = order_of(rule, x, y, misses);
+    const double order = order_of(misses, noise);
+    std::vector<double> error;
     for (std::size_t cell = 0; cell + 1 < n; ++cell) {
         // With its neighbours, because one cell may agree by luck; those at the ends are seen from one side only.
-        double square = 0, weight = 0;
+        double by_rule = 0, weight = 0;
         for (std::size_t i = cell == 0 ? 0 : cell - 1; i <= std::min(n - 2, cell + 1); ++i) {
-            const double w = i == cell ? 5 : 1;
+            const double w = i == cell ? 2 : 1;
             // Noise makes the two rules differ by a third of it, and a left-out point by a little more than itself.
-            square += w * std::max(0.0, apart[i] - 0.05 * (noise[i] * noise[i] + noise[i + 1] * noise[i + 1]));
+            by_rule += w * beyond_noise(apart[i], 0.05 * (noise[i] * noise[i] + noise[i + 1] * noise[i + 1]));
             weight += w;
         }
-        const double by_rule = square / weight;
-        square = weight = 0;
-        for (std::size_t out = std::max<std::size_t>(1, cell == 0 ? 1 : cell - 1); out <= std::min(n - 2, cell + 2);
-             ++out) {
+        by_rule /= weight;
+        double missed = weight = 0;
+        for (std::size_t out = std::max<std::size_t>(2, cell) - 1; out <= std::min(n - 2, cell + 2); ++out) {
             const double share = std::pow((t[cell + 1] - t[cell]) / (t[out + 1] - t[out - 1]), order);
-            square += share * share * std::max(0.0, misses[out] * misses[out] - 1.6 * noise[out] * noise[out]);
+            missed += share * beyond_noise(misses[out] * misses[out], 1.6 * noise[out] * noise[out]);
             weight += 1;
         }
-        const double missed = square / weight;
-        error[cell] = std::sqrt(std::max(by_rule + of_misses * missed, of_misses_alone * missed));
+        error.push_back(std::hypot(by_rule, std::sqrt(of_misses) * missed / weight));
     }
     return error;
 }
 
-/// Per cell of axis k the root mean square over all grid lines along it.
+/// Per cell of axis k the mean over all grid lines along it.
 std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std::vector<double>& values,
                                 const std::vector<double>& noise, std::size_t k) {
     std::size_t stride = 1;
@@ -150,7 +143,7 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
         stride *= grid.axis(j).size();
     }
     const std::vector<double>& x = grid.axis(k).points();
-    std::vector<double> square(x.size() - 1, 0.0);
+    std::vector<double> mean(x.size() - 1, 0.0);
     double lines = 0;
     std::vector<double> line(x.size()), of_line(x.size());
     for (std::size_t start = 0; start < values.size(); ++start) {
@@ -163,14 +156,14 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
         }
         const auto error = cell_errors(rule, x, line, of_line);
         for (std::size_t i = 0; i < error.size(); ++i) {
-            square[i] += error[i] * error[i];
+            mean[i] += error[i];
         }
         ++lines;
     }
-    for (double& v : square) {
-        v = std::sqrt(v / lines);
+    for (double& v : mean) {
+        v /= lines;
     }
-    return square;
+    return mean;
 }
 
 /// The errors of the axes are independent, but an ErrorModel adds them: all get the factor by which their sum is too
@@ -178,10 +171,7 @@ std::vector<double> cell_errors(SlopeRule rule, const CubicGrid& grid, const std
 void add_in_squares(std::vector<std::vector<double>>& cells) {
     double sum = 0, squares = 0;
     for (const auto& axis : cells) {
-        double square = 0;
-        for (const double v : axis) {
-            square += v * v / static_cast<double>(axis.size());
-        }
+        const double square = mean_square(axis);
         sum += std::sqrt(square);
         squares += square;
     }

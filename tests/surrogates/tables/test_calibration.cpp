@@ -24,13 +24,12 @@ void judge(std::size_t axes, std::size_t seeds) {
         std::cout << setting.name << ": " << c.share << " within one standard deviation, " << c.share_two
                   << " within two; the narrowest band that holds 68 % is " << c.scale
                   << " of the stated one; stated bands are " << c.width << " times the narrowest an interval of gaps\n";
-        // Exact points that are interpolated: their error is that of forces as CFD has them, with kinks; smoother ones
-        // are met better.
-        const bool exact = setting.name.ends_with("exact") && !setting.grid.empty();
         // A few forces of a kind leave their own chance; the long run has enough of them for the bounds that are meant.
+        // Wider than meant is the 8 x 5 grid with stated noise (76 %), where the points leave room for a smoother fit.
+        const bool stated = setting.noise > 0 && setting.stated;
         EXPECT_GT(c.share, long_run() ? 0.60 : 0.52) << setting.name;
-        EXPECT_LT(c.share, exact ? (long_run() ? 0.85 : 0.90) : long_run() ? 0.78 : 0.86) << setting.name;
-        EXPECT_GT(c.scale, 1 / (exact ? 1.6 : long_run() ? 1.3 : 1.6)) << setting.name;
+        EXPECT_LT(c.share, long_run() ? (stated ? 0.78 : 0.76) : 0.86) << setting.name;
+        EXPECT_GT(c.scale, 1 / (long_run() ? 1.3 : 1.6)) << setting.name;
         share += c.share;
         ++count;
     }
