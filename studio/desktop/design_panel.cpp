@@ -71,7 +71,11 @@ void DesignPanel::build() {
     map_plot_ = new PlotView(this);
     constexpr int room = 800;  // px: narrower ones are all legend
     views->addWidget(upper);
-    views->addWidget(new SideBySide(lift_plot_, "Lift", map_plot_, "Stability map", room));
+    lift_or_map_ = new SideBySide(lift_plot_, "Lift", map_plot_, "Stability map", room);
+    views->addWidget(lift_or_map_);
+    connect(lift_or_map_->tabs(), &QTabBar::currentChanged, this, [this](int tab) {
+        desk_.act({"show", tab == 1 ? "map" : "lift"});
+    });
     views->setStretchFactor(0, 3);
     views->setStretchFactor(1, 2);
     auto* side = new QWidget;
@@ -284,6 +288,7 @@ std::shared_ptr<const LiveBody> DesignPanel::remembered(const std::string& key) 
 }
 
 void DesignPanel::draw_again(bool fresh) {
+    lift_or_map_->show_right(state().design.map);
     const QSignalBlocker quiet(choice_);
     choice_->clear();
     for (const auto& name : shape_names(state(), session())) {

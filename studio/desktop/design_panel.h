@@ -27,6 +27,7 @@ namespace underbody::studio {
 
 class ParameterRow;
 class PlotView;
+class SideBySide;
 
 /// The stability map of a shape.
 struct ShapeMap {
@@ -134,6 +135,7 @@ private:
     QLabel* lift_label_ = nullptr;
     QLabel* map_label_ = nullptr;
     PlotView* section_ = nullptr;
+    SideBySide* lift_or_map_ = nullptr;
     PlotView* lift_plot_ = nullptr;
     PlotView* map_plot_ = nullptr;
     QVBoxLayout* parameter_column_ = nullptr;

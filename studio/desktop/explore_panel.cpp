@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSplitter>
+#include <QStackedWidget>
 #include <QTabWidget>
 #include <QTableWidget>
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/body_figures.h"
+#include "studio/desktop/case_pictures.h"
 #include "studio/desktop/natural_order.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
@@ -100,17 +102,23 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
     table_->verticalHeader()->setDefaultSectionSize(21);
     scatter_ = new PlotView(this);
-    pictures_ = new PlotView(this);
+    bodies_ = new PlotView(this);
+    cases_ = new CasePictures(desk_, this);
+    pictures_ = new QStackedWidget;
+    pictures_->addWidget(bodies_);
+    pictures_->addWidget(cases_);
     pictures_or_points_ = new QTabWidget;
     pictures_or_points_->setDocumentMode(true);
     pictures_or_points_->addTab(scatter_, "Points");
-    pictures_or_points_->addTab(pictures_, "Bodies from below");
+    pictures_or_points_->addTab(pictures_, "Pictures");
     lower->addWidget(table_);
     lower->addWidget(pictures_or_points_);
     halves->addWidget(lower);
     halves->setSizes({260, 340});
     connect(scatter_, &PlotView::hovered, this, &Panel::remark);
-    connect(pictures_or_points_, &QTabWidget::currentChanged, this, [this] { draw_pictures(); });
+    connect(pictures_or_points_, &QTabWidget::currentChanged, this, [this](int tab) {
+        desk_.act({"show", tab == 1 ? "pictures" : "points"});
+    });
     connect(parallel_, &ParallelView::brushed, this, [this](const QString& name, double low, double high) {
         desk_.act({"brush", name.toStdString() + "=" +
                                 (low < high ? core::format_number(low, 6) + ":" + core::format_number(high, 6)
@@ -218,7 +226,10 @@ void ExplorePanel::draw_again(bool) {
     const bool shapes = state().explore.shapes;
     what_->setCurrentIndex(shapes ? 1 : 0);
     vary_row_->setVisible(shapes);
-    pictures_or_points_->setTabEnabled(1, shapes);
+    const QSignalBlocker quiet_tabs(pictures_or_points_);
+    pictures_or_points_->setCurrentIndex(state().explore.pictures ? 1 : 0);
+    pictures_or_points_->setTabText(1, shapes ? "Bodies from below" : "Pictures of cases");
+    pictures_->setCurrentIndex(shapes ? 0 : 1);
     if (!vary_->hasFocus() || vary_->text().isEmpty()) {
         QStringList parts;
         for (const auto& one : state().explore.vary) {
@@ -371,9 +382,17 @@ void ExplorePanel::draw_scatter() {
     scatter_->show_figure(figure, true);
 }
 
-/// The kept bodies, seen from below.
+/// The kept bodies, seen from below, or the pictures of the kept cases.
 void ExplorePanel::draw_pictures() {
-    if (!state().explore.shapes || pictures_or_points_->currentIndex() != 1) {
+    if (!state().explore.pictures) {
+        return;
+    }
+    if (!state().explore.shapes) {
+        std::vector<std::string> names;
+        for (const std::size_t row : kept_) {
+            names.push_back(name_of_row(row));
+        }
+        cases_->show_cases(names);
         return;
     }
     std::vector<geometry::NamedBody> bodies;
@@ -384,17 +403,17 @@ void ExplorePanel::draw_pictures() {
         }
     }
     if (bodies.empty()) {
-        pictures_->show_text("No shape is kept");
+        bodies_->show_text("No shape is kept");
         return;
     }
     const std::string more = kept_.size() > bodies.size() ? ", the first " + std::to_string(bodies.size()) : "";
-    pictures_->show_figure(geometry::sheet_figure(bodies, "kept" + more), true);
+    bodies_->show_figure(geometry::sheet_figure(bodies, "kept" + more), true);
 }
 
 bool ExplorePanel::has_picture() const { return scatter_->has_figure(); }
 void ExplorePanel::export_picture(const std::filesystem::path& path) {
-    const bool bodies = pictures_or_points_->currentIndex() == 1 && pictures_->has_figure();
-    (bodies ? pictures_ : scatter_)->write(path);
+    const bool bodies = state().explore.shapes && state().explore.pictures && bodies_->has_figure();
+    (bodies ? bodies_ : scatter_)->write(path);
 }
 void ExplorePanel::export_table(const std::filesystem::path& path) { core::write_csv(path, rows().selected(kept_)); }
 

@@ -12,12 +12,14 @@ class QComboBox;
 class QLabel;
 class QLineEdit;
 class QPushButton;
+class QStackedWidget;
 class QTableWidget;
 class QTabWidget;
 class QVBoxLayout;
 
 namespace underbody::studio {
 
+class CasePictures;
 class ParallelView;
 class PlotView;
 
@@ -76,7 +78,9 @@ private:
     ParallelView* parallel_ = nullptr;
     QTabWidget* pictures_or_points_ = nullptr;
     PlotView* scatter_ = nullptr;
-    PlotView* pictures_ = nullptr;
+    QStackedWidget* pictures_ = nullptr;  ///< bodies, or cases
+    PlotView* bodies_ = nullptr;
+    CasePictures* cases_ = nullptr;
     QTableWidget* table_ = nullptr;
 };
 

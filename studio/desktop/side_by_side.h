@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QBoxLayout>
+#include <QSignalBlocker>
 #include <QTabBar>
 #include <QWidget>
 
@@ -30,6 +31,12 @@ public:
         place();
     }
     [[nodiscard]] QTabBar* tabs() const { return tabs_; }
+    /// Without the tabs' signal.
+    void show_right(bool right) {
+        const QSignalBlocker quiet(tabs_);
+        tabs_->setCurrentIndex(right ? 1 : 0);
+        place();
+    }
 
 protected:
     void resizeEvent(QResizeEvent*) override { place(); }

@@ -36,5 +36,6 @@ State explore_axes(State state, const Words& words, const Session& session);
 State brush(State state, const Words& words, const Session& session);
 State vary(State state, const Words& words, const Session& session);
 State rows(State state, const Words& words, const Session& session);
+State show(State state, const Words& words, const Session& session);
 
 }  // namespace underbody::studio::action

@@ -196,4 +196,23 @@ State rows(State state, const Words& words, const Session&) {
     return state;
 }
 
+State show(State state, const Words& words, const Session& session) {
+    need(words, 1, 2, "show points|pictures [VIEW]|lift|map");
+    const std::string& what = words[0];
+    need_one_of(what, {"points", "pictures", "lift", "map"}, "view");
+    if (words.size() > 1 && what != "pictures") {
+        throw UsageError("words", "'" + what + "' takes no further word, not '" + words[1] + "'", {}, "show " + what);
+    }
+    if (what == "lift" || what == "map") {
+        state.design.map = what == "map";
+        return state;
+    }
+    state.explore.pictures = what == "pictures";
+    if (words.size() > 1) {
+        need_one_of(words[1], case_views(session), "picture of cases");
+        state.explore.picture = words[1];
+    }
+    return state;
+}
+
 }  // namespace underbody::studio::action

@@ -347,6 +347,9 @@ const std::vector<ActionKind>& action_kinds() {
          "vary protrusion.height=1mm:3mm:5", false, action::vary},
         {"rows", "cases|shapes", "explores the cases of the study or the shapes that vary", "rows cases", true,
          action::rows},
+        {"show", "points|pictures [VIEW]|lift|map",
+         "brings a view to the front: of Explore the points or the pictures, of Design the lift or the stability map",
+         "show pictures", true, action::show},
     };
     return kinds;
 }

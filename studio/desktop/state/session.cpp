@@ -1,5 +1,7 @@
 #include "studio/desktop/state/session.h"
 
+#include <algorithm>
+
 #include "cases/accept.h"
 
 namespace underbody::studio {
@@ -74,6 +76,30 @@ SessionPointer with_files(const Session& session, const std::vector<std::string>
     add_bodies(*newer);
     add_files(*newer, files);
     return newer;
+}
+
+std::vector<std::string> case_views(const Session& session) {
+    std::vector<std::string> found;
+    for (const auto& spec : session.study.pictures) {
+        for (const auto& [key, png] : session.results.pictures) {
+            const std::string view = key.substr(key.rfind('/') + 1);
+            if (key.starts_with("picture/" + spec.name + "/") &&
+                std::find(found.begin(), found.end(), view) == found.end()) {
+                found.push_back(view);
+            }
+        }
+    }
+    return found;
+}
+
+std::string case_picture(const Session& session, const std::string& view, const std::string& name) {
+    for (const auto& spec : session.study.pictures) {
+        const std::string key = "picture/" + spec.name + "/" + name + "/" + view;
+        if (session.results.picture(key) != nullptr) {
+            return key;
+        }
+    }
+    return {};
 }
 
 }  // namespace underbody::studio

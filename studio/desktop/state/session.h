@@ -39,4 +39,9 @@ SessionPointer open_session(const std::filesystem::path& folder, const std::vect
 /// The same study and results with the shapes of other outside files.
 SessionPointer with_files(const Session& session, const std::vector<std::string>& files);
 
+/// The views of cases that the store has pictures of: "pressure-underbody", ...
+std::vector<std::string> case_views(const Session& session);
+/// The key of such a picture of a case among the results, of the first [[picture]] that has one; empty: there is none.
+std::string case_picture(const Session& session, const std::string& view, const std::string& name);
+
 }  // namespace underbody::studio

@@ -121,6 +121,7 @@ void fields(auto& v, const DesignView& /*kind*/, const auto& field) {
     field("changes", v.changes);
     field("before", v.before);
     field("before_shape", v.before_shape);
+    field("map", v.map);
 }
 
 void fields(auto& v, const FieldView& /*kind*/, const auto& field) {
@@ -192,6 +193,8 @@ void fields(auto& v, const ExploreView& /*kind*/, const auto& field) {
     field("y", v.y);
     field("brush", v.brush);
     field("shapes", v.shapes);
+    field("pictures", v.pictures);
+    field("picture", v.picture);
 }
 
 void fields(auto& v, const State& /*kind*/, const auto& field) {

@@ -87,6 +87,8 @@ struct ExploreView {
     std::map<std::string, std::array<double, 2>> brush;  ///< column -> kept range, SI
     std::vector<geometry::Vary> vary;                    ///< of the shape that Design shows
     bool shapes = false;                                 ///< these shapes are explored, not the cases
+    bool pictures = false;                               ///< in front of the points
+    std::string picture;                                 ///< of each case, by its view; empty: the first
     bool operator==(const ExploreView&) const = default;
 };
 
@@ -99,6 +101,7 @@ struct DesignView {
     std::map<std::string, KeptVariant> variants;
     ShapeChanges before;  ///< what the results are compared with, of `before_shape`
     std::string before_shape;
+    bool map = false;  ///< the stability map is in front of the lift, where there is room for one of them
     bool operator==(const DesignView&) const = default;
 };
 

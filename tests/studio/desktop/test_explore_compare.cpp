@@ -5,8 +5,10 @@
 // clang-format on
 
 #include <QCheckBox>
+#include <QComboBox>
 #include <QHeaderView>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QPushButton>
 #include <QTableWidget>
 #include <QTest>
@@ -17,6 +19,7 @@
 #include "core/table.h"
 #include "core/text.h"
 #include "geometry/body/body_report.h"
+#include "studio/desktop/case_pictures.h"
 #include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/compare_sheet.h"
 #include "studio/desktop/explore_panel.h"
@@ -90,6 +93,51 @@ TEST_F(Window, ARangeIsTypedAsWellAsDragged) {
     QTest::keyClick(kept, Qt::Key_Return);
     EXPECT_NE(window_->last_error().indexOf("LOW:HIGH"), -1) << "said";
     EXPECT_EQ(explore.kept().size(), 3U) << "and nothing changed";
+}
+
+TEST_F(Window, PicturesOfTheKeptCasesStandBesideEachOther) {
+    const fs::path folder = copy_of_study();
+    core::write_file(folder / "study.toml", core::read_file(folder / "study.toml") +
+                                                "\n[[picture]]\nname = \"narrow\"\nwhere = { gap = \"2mm\" }\n"
+                                                "views = [\"pressure-underbody\", \"pressure-hull\"]\n[[picture]]\n"
+                                                "name = \"all\"\nwhere = { pitch = 0 }\n"
+                                                "views = [\"pressure-underbody\"]\n");
+    const auto run = test::run_underbody({"study", "run", folder.string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    open(folder);
+    act("workspace explore");
+    act("show pictures");
+    settle(*window_);
+    auto& pictures = panel<CasePictures>();
+    ASSERT_EQ(pictures.views()->count(), 2);
+    act("show pictures pressure-hull");
+    settle(*window_);
+    EXPECT_EQ(pictures.list()->count(), 1);
+    EXPECT_EQ(pictures.said(), "1 picture; 4 cases without this picture");
+    act("show pictures pressure-underbody");
+    settle(*window_);
+    ASSERT_EQ(pictures.list()->count(), 5);
+    std::set<qint64> different;
+    for (int i = 0; i < 5; ++i) {
+        const QImage icon = pictures.list()->item(i)->icon().pixmap(200, 150).toImage();
+        ASSERT_FALSE(icon.isNull()) << i;
+        different.insert(
+            qHash(QByteArray(reinterpret_cast<const char*>(icon.constBits()), static_cast<int>(icon.sizeInBytes()))));
+    }
+    EXPECT_EQ(different.size(), 5U) << "each case its own";
+    act("brush gap=2.5mm:10mm");
+    settle(*window_);
+    EXPECT_EQ(pictures.list()->count(), 3) << "those that the brush keeps";
+    pictures.list()->setCurrentRow(1);
+    ASSERT_EQ(window_->desk().state().selected("case").size(), 1U);
+    EXPECT_EQ(window_->desk().state().selected("case").front(), pictures.list()->item(1)->text().toStdString());
+    act("show pictures pressure-underbdy");
+    EXPECT_NE(window_->last_error().indexOf("pressure-underbody"), -1) << window_->last_error().toStdString();
+    act("show points");
+    settle(*window_);
+    EXPECT_FALSE(pictures.isVisible());
+    window_->desk().undo();
+    settle(*window_);
 }
 
 // Forces of the library, with the errors of the study's tables; what differs by more than twice the joint one is bold.

@@ -59,6 +59,8 @@ TEST_F(Window, EveryActionIsDoneUndoneAndRedone) {
                                             "brush gap=2mm:5mm",
                                             "vary body.base_cut=0.7:0.8:2",
                                             "rows cases",
+                                            "show pictures",
+                                            "show map",
                                             "workspace compare",
                                             "fields camera=bottom range=-100:100",
                                             "workspace tables",

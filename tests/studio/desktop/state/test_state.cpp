@@ -83,6 +83,7 @@ std::vector<std::string> every_action() {
         "vary protrusion.height=1mm:3mm:3 body.base=ellipse,rectangle",
         "brush volume=2000cm^3:2300cm^3",
         "rows cases",
+        "show pictures",
         "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
         "range.gap=clamp",
         "measure tank model=" + (evie() / "heave" / "model.toml").string() + " data=" + (evie() / "heave").string() +
