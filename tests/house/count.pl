@@ -1,7 +1,7 @@
 #!/usr/bin/env perl
 # Counts the sources of the product (core to studio): files, lines, lengths of files and functions (median, 95 %, longest),
 # the largest group of files that include each other (a .cpp and its header are one), and numbers without a name. Prints
-# only: goals stand in CONTRIBUTING.md, section Style.
+# only: goals stand in CONTRIBUTING.md, section Style. --long N: the functions of more than N lines, the longest first.
 use strict;
 use warnings;
 use File::Basename;
@@ -10,7 +10,9 @@ use File::Spec;
 chdir(dirname(File::Spec->rel2abs($0)) . "/../..") or die;
 my @rooms = qw(core geometry postproc surrogates/tables surrogates/dynamics surrogates/estimator surrogates/discovery
                cases studio);
-my (%count, %uses, @all_files, @all_functions);
+my $long = @ARGV == 2 && $ARGV[0] eq "--long" && $ARGV[1] =~ /^\d+$/ ? $ARGV[1] : undef;
+die "count.pl [--long LINES]\n" if @ARGV && !defined $long;
+my (%uses, @all_files, @all_functions, @long);
 
 # Code without comments, text in quotes and preprocessor lines; line ends stay.
 sub bare {
@@ -21,10 +23,11 @@ sub bare {
     return $text;
 }
 
-# Lengths of functions: a block in a namespace or class whose head has a parameter list.
-sub function_lengths {
+# Functions, each with its lines, its first line and its head: a block in a namespace or class whose head has a parameter
+# list.
+sub functions {
     my ($code) = @_;
-    my ($line, $head, $head_line, @blocks, @lengths) = (1, "", 1);
+    my ($line, $head, $head_line, @blocks, @found) = (1, "", 1);
     for my $c (split //, $code) {
         $head_line = $line if $head !~ /\S/;
         if ($c eq "{") {
@@ -32,11 +35,11 @@ sub function_lengths {
             my $kind = $head =~ /\bnamespace\b|\bextern\b/ ? "space"
                 : $head =~ /^\s*(?:template\s*<.*>\s*)?(?:class|struct|union|enum)\b/s && $head !~ /=\s*$/ ? "space"
                 : $outer eq "space" && $head =~ /\)[^=]*$/s ? "function" : "block";
-            push @blocks, [$kind, $head_line];
+            push @blocks, [$kind, $head_line, $head];
             $head = "";
         } elsif ($c eq "}") {
             my $block = pop @blocks;
-            push @lengths, $line - $block->[1] + 1 if $block && $block->[0] eq "function";
+            push @found, [$line - $block->[1] + 1, @$block[1, 2]] if $block && $block->[0] eq "function";
             $head = "";
         } elsif ($c eq ";") {
             $head = "";
@@ -45,7 +48,7 @@ sub function_lengths {
         }
         $line++ if $c eq "\n";
     }
-    return @lengths;
+    return @found;
 }
 
 # Numbers without a name: floating-point literals in the middle of an expression. Not counted, because nothing is decided
@@ -123,7 +126,12 @@ for my $room (@rooms) {
         $lines += $length;
         push @files, $length;
         my $code = bare($text);
-        push @functions, function_lengths($code);
+        for my $function (functions($code)) {
+            my ($length, $line, $head) = @$function;
+            push @functions, $length;
+            push @long, sprintf "%5d  %s:%d %s", $length, $file, $line, $head =~ /([\w:~]+)\s*\(/ ? $1 : ""
+                if defined $long && $length > $long;
+        }
         $numbers += bare_numbers($code);
         (my $node = $file) =~ s/\.(?:h|cpp)$//;
         $uses{$node} ||= {};
@@ -146,3 +154,4 @@ my ($largest, @others) = sort { @$b <=> @$a } @groups;
 printf "largest group of files that include each other: %d%s\n", scalar @$largest,
     @$largest > 1 ? " (" . join(", ", sort @$largest) . ")" : "";
 printf "groups of more than four: %d\n", scalar grep { @$_ > 4 } @groups;
+print "functions of more than $long lines: ", scalar @long, "\n", map { "$_\n" } sort { $b cmp $a } @long if defined $long;
