@@ -69,7 +69,7 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     if (const std::string read = dynamics::reading_text(prediction.records); !read.empty()) {
         text += "logs read as " + read + " (" +
                 (prediction.input_between == "linear" && prediction.input_between_from == "data"
-                     ? "between its samples the measured motion fits that better"
+                     ? "the measured motion fits that better"
                      : "the model's [records]") +
                 ")\n";
     }

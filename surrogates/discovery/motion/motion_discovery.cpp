@@ -90,8 +90,9 @@ void MotionLoop::split() {
     }
     experiment_.emplace(motion_, model_, data_, std::move(train));
     channels_ = experiment_->channels();
-    input_recorded_ = std::any_of(data_.runs.begin(), data_.runs.end(),
-                                  [&](const dynamics::MeasuredRun& run) { return motion_.driven(model_, run); });
+    input_recorded_ =
+        std::any_of(experiment_->records().begin(), experiment_->records().end(),
+                    [&](const MotionRecord& record) { return motion_.driven(model_, data_.runs[record.run]); });
 }
 
 /// Of the sensors as declared or as the readings scatter; of the loads a little.
@@ -138,6 +139,11 @@ void MotionLoop::try_between() {
     const Between found = dynamics::between_samples(Between::unsaid, held, linear);
     experiment_->read_input(found);
     set_null(found == Between::linear ? other : noise);
+    if (found == Between::linear) {
+        warn(
+            "the recorded inputs are linear between their samples: the motion fits that better than held ones; the "
+            "errors before and after are with inputs read so, and [records] of the new model says it");
+    }
 }
 
 void MotionLoop::list_candidates() {

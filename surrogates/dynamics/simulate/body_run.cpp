@@ -47,12 +47,7 @@ MeasuredBody::MeasuredBody(const Model& model, const MeasuredRun& run, const Rec
         throw core::InputError("motion", "history_force cannot be predicted in the motion of the whole body",
                                {model.name, {}, {}, {}}, "leave the effect out, or say motion = \"heave\" of the runs");
     }
-    const std::vector<MotionShape::State>& states = shape().states;
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        if (run.table.find(states[i].channel) != nullptr) {
-            readings_.value[i] = as_read(run, states[i].channel, records);
-        }
-    }
+    take_readings(run, records, {height, nose});
     need_columns(run);
     unwrap(readings_.value[heading]);
     look_at_roll(run);
@@ -74,8 +69,6 @@ void MeasuredBody::need_columns(const MeasuredRun& run) const {
                                    "heading, or speed and sway_velocity");
         }
     };
-    need(has(height), "gap");
-    need(has(nose), "pitch");
     need(has(heading) || has(turn), "heading and no yaw_rate");
     need((has(place_x) && has(place_y) && has(heading)) || (has(surge) && has(sway)),
          "places (position_x, position_y, heading) and no speeds (speed, sway_velocity)");

@@ -109,6 +109,30 @@ InsideTables longest_inside(std::span<const double> gap, const GapRange& tables,
     return found;
 }
 
+bool fill_missing(const std::vector<double>& time, std::vector<double>& values, bool linear) {
+    const auto known = [&](std::size_t i) { return std::isfinite(values[i]); };
+    std::size_t first = 0;
+    while (first < values.size() && !known(first)) {
+        ++first;
+    }
+    if (first == values.size()) {
+        return false;
+    }
+    std::fill(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values[first]);
+    for (std::size_t last = first, i = first + 1; i <= values.size(); ++i) {
+        if (i < values.size() && !known(i)) {
+            continue;
+        }
+        for (std::size_t k = last + 1; k < i; ++k) {
+            const double share =
+                linear && i < values.size() ? (time[k] - time[last]) / (time[i] - time[last]) : 0;  // else held
+            values[k] = share > 0 ? values[last] + share * (values[i] - values[last]) : values[last];
+        }
+        last = i;
+    }
+    return true;
+}
+
 void unwrap(std::vector<double>& angle) {
     constexpr double turn_round = 2 * std::numbers::pi;
     double last = std::nan(""), added = 0;

@@ -27,6 +27,10 @@ struct InsideTables {
 /// `gap` in m; `noise` is one standard deviation of a reading, m: a reading within six of them of a table is inside.
 InsideTables longest_inside(std::span<const double> gap, const GapRange& tables, double noise);
 
+/// Of a recorded input: rows of other sensors that stand between its samples say nothing of it, there it acts as
+/// between samples, held or linear; before its first value it is that. False where it has no value at all.
+bool fill_missing(const std::vector<double>& time, std::vector<double>& values, bool linear);
+
 /// A heading that jumps by a turn goes on.
 void unwrap(std::vector<double>& angle);
 

@@ -32,6 +32,9 @@ void remark_long_horizon(const Measurements& data, const PredictOptions& options
     }
 }
 
+namespace {
+
+/// Shorter than the horizon, or sampled too coarsely for it.
 core::InputError no_prediction(const Measurements& data, const PredictOptions& options) {
     constexpr double samples = 3;  // before a window, that its state is estimated from
     double step = std::numeric_limits<double>::infinity();
@@ -52,6 +55,24 @@ core::InputError no_prediction(const Measurements& data, const PredictOptions& o
                 core::format_number(longest_run(data), 4) + " s",
             {},
             "a shorter horizon"};
+}
+
+}  // namespace
+
+Prediction predict_shorter(const Measurements& data, const PredictOptions& options,
+                           const std::function<Prediction(const PredictOptions&)>& predict) {
+    const double shorter = 0.25 * longest_run(data);
+    if (!(shorter > 0 && shorter < options.horizon)) {
+        throw no_prediction(data, options);
+    }
+    PredictOptions short_runs = options;
+    short_runs.horizon = shorter;
+    Prediction out = predict(short_runs);
+    out.remarks.push_back({core::Problem::Severity::warning,
+                           "no run is long enough for a prediction over " + core::format_number(options.horizon, 4) +
+                               " s: predicted over " + core::format_number(shorter, 4) + " s",
+                           {}});
+    return out;
 }
 
 }  // namespace underbody::dynamics

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/no_limit.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/pitch_run.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
@@ -18,6 +20,21 @@ const Motion* motion_of(const Model& model, const Measurements& data) {
         }
     }
     return moves_in_pitch(model, data) ? &heave_pitch_motion() : nullptr;
+}
+
+void MeasuredMotion::take_readings(const MeasuredRun& run, const RecordReading& records,
+                                   std::initializer_list<std::size_t> needed) {
+    for (std::size_t i = 0; i < shape().states.size(); ++i) {
+        const std::string& channel = shape().states[i].channel;
+        std::vector<double> values =
+            run.table.find(channel) != nullptr ? as_read(run, channel, records) : std::vector<double>{};
+        if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) {
+            readings_.value[i] = std::move(values);
+        } else if (std::find(needed.begin(), needed.end(), i) != needed.end()) {
+            throw core::InputError("missing", "run " + run.name + " has no value of " + channel,
+                                   {run.table.source, {}, {}, {}}, shape().words + " is not told without it");
+        }
+    }
 }
 
 std::vector<std::string> MeasuredMotion::clean_after(std::vector<std::string> said, const std::string& name,
@@ -49,8 +66,12 @@ bool column_moves(const MeasuredRun& run, const std::string& column) {
     if (found == nullptr || found->is_text() || found->numbers.empty()) {
         return false;
     }
-    const auto [low, high] = std::minmax_element(found->numbers.begin(), found->numbers.end());
-    return *high > *low;
+    double low = core::no_limit, high = -core::no_limit;
+    for (const double value : found->numbers) {
+        low = std::isfinite(value) ? std::min(low, value) : low;
+        high = std::isfinite(value) ? std::max(high, value) : high;
+    }
+    return high > low;
 }
 
 std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end) {

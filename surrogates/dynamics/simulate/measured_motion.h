@@ -106,6 +106,9 @@ public:
     void set_noise(const std::array<double, most_states>& noise) { readings_.noise = noise; }
 
 protected:
+    /// Readings of all states of which the run has any. Throws core::InputError where it has none of one of `needed`.
+    void take_readings(const MeasuredRun& run, const RecordReading& records,
+                       std::initializer_list<std::size_t> needed = {});
     /// Outliers, and gaps at the end of the sensor's range, become missing; gaps outside the tables of the model are
     /// said. What is said of it, after `said`.
     std::vector<std::string> clean_after(std::vector<std::string> said, const std::string& name, const Model& model);
@@ -141,7 +144,7 @@ const Motion& body_motion();
 /// The motion that these runs are of as dataset.toml says, or as model and readings tell; nullptr: heave alone.
 const Motion* motion_of(const Model& model, const Measurements& data);
 
-/// True where a run has such a column and its values differ.
+/// True where a run has such a column and its values differ; those that are missing tell nothing.
 bool column_moves(const MeasuredRun& run, const std::string& column);
 
 /// A step of `h` by the fourth-order rule of Runge and Kutta; rate(share of the step, state, its rate).

@@ -38,6 +38,10 @@ Ode::Stop MotionDriver::follow(Ode& ode, double& t, core::Progress& progress) {
         stop = step > 0 ? ode.advance(goal) : ode.one_step(goal);
         t = stop.t;
         accept(t, ode.state());
+        if (!stop.event && t >= limit && t < end()) {
+            // before the row: what stands there acts from then on, as whoever reads the rows takes it
+            sample(t, std::vector<double>(ode.state(), ode.state() + settings.states));
+        }
         // The end of a sample is a row only where a row falls on it.
         const bool is_row = goal == next && (t >= end() || std::abs(next - row) <= same_time * step);
         if (!stop.event && (step == 0 || is_row)) {
@@ -77,9 +81,6 @@ void MotionDriver::run(double t0, std::vector<double> y, core::Progress& progres
         y.assign(ode.state(), ode.state() + settings.states);
         if (stop.event && !after(stop, t, y)) {
             return;
-        }
-        if (!stop.event && t < end()) {
-            sample(t, y);
         }
     }
 }

@@ -52,7 +52,7 @@ protected:
     virtual void begin_piece(double&, std::vector<double>&, core::Progress&) {}
     /// An accepted step ends here.
     virtual void accept(double, const double*) {}
-    /// The controller's next sample.
+    /// The controller's next sample; a row at that time comes after it.
     virtual void sample(double, const std::vector<double>&) {}
 
 private:

@@ -80,6 +80,52 @@ void check_motion(const std::vector<MotionRunPrediction>& all, const Model& mode
     }
 }
 
+/// All readings less predictions, in noise: state by state, one window after the other.
+std::vector<double> errors_of(const std::vector<MotionRunPrediction>& all, std::size_t states) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < states; ++i) {
+        for (const MotionRunPrediction& one : all) {
+            const MotionReadings& read = one.run->readings();
+            for (const MotionWindow& window : one.windows) {
+                for (std::size_t k = window.start; !read.value[i].empty() && k <= window.end; ++k) {
+                    if (std::isfinite(read.value[i][k]) && read.noise[i] > 0) {
+                        errors.push_back((one.run->reading(k, i, window.at(k)) - read.value[i][k]) / read.noise[i]);
+                    }
+                }
+            }
+        }
+    }
+    return errors;
+}
+
+/// Inputs held or linear between samples: as the model says, else what the measured motion fits.
+std::vector<MotionRunPrediction> predict_as_read(const Motion& motion, const Model& model, const Measurements& data,
+                                                 const PredictOptions& options, Prediction& out,
+                                                 core::Progress& progress) {
+    using Between = RecordReading::Between;
+    out.records = model.records;
+    const bool driven = std::any_of(data.runs.begin(), data.runs.end(),
+                                    [&](const MeasuredRun& run) { return motion.driven(model, run); });
+    const Between declared = model.records.input_between;
+    out.input_between = !driven ? "" : declared == Between::linear ? "linear" : "held";
+    out.input_between_from = !driven ? "" : declared == Between::unsaid ? "data" : "declared";
+    std::vector<MotionRunPrediction> all = predict_motion_runs(motion, model, data, options, progress);
+    if (!driven || declared != Between::unsaid) {
+        return all;
+    }
+    Model other = model;
+    other.records.input_between = Between::linear;
+    std::vector<MotionRunPrediction> linear = predict_motion_runs(motion, other, data, options, progress);
+    const std::size_t states = motion.shape().states.size();
+    if (between_by_errors(errors_of(all, states), errors_of(linear, states)) == Between::linear) {
+        out.records = other.records;
+        out.input_between = "linear";
+        return linear;
+    }
+    out.records.input_between = Between::held;
+    return all;
+}
+
 }  // namespace
 
 Prediction predict_motion_series(const Motion& motion, const Model& model, const Measurements& data,
@@ -89,14 +135,12 @@ Prediction predict_motion_series(const Motion& motion, const Model& model, const
     out.time_series = true;
     out.motion = motion.shape().name;
     out.horizon = options.horizon;
-    out.records = model.records;
-    const bool linear = model.records.input_between == RecordReading::Between::linear;
-    out.input_between = linear ? "linear" : "held";
-    out.input_between_from = model.records.input_between == RecordReading::Between::unsaid ? "default" : "declared";
-    const std::vector<MotionRunPrediction> all = predict_motion_runs(motion, model, data, options, progress);
+    const std::vector<MotionRunPrediction> all = predict_as_read(motion, model, data, options, out, progress);
     check_motion(all, model, data, out);
     if (out.windows == 0) {
-        throw no_prediction(data, options);
+        return predict_shorter(data, options, [&](const PredictOptions& shorter) {
+            return predict_motion_series(motion, model, data, shorter, progress);
+        });
     }
     remark_long_horizon(data, options, out);
     std::vector<std::string> names;

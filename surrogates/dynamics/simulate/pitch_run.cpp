@@ -54,15 +54,6 @@ bool pitch_moves(const MeasuredRun& run) {
     return spread > 1e-9 && spread > moves_by * noise;
 }
 
-/// A missing value is that before it.
-void fill(std::vector<double>& values) {
-    double last = 0;
-    for (double& value : values) {
-        last = std::isfinite(value) ? value : last;
-        value = last;
-    }
-}
-
 }  // namespace
 
 bool moves_in_pitch(const Model& model, const Measurements& data) {
@@ -98,13 +89,11 @@ PitchRun::PitchRun(const Model& model, const MeasuredRun& run, const RecordReadi
     }
     if (run.has("input_moment")) {
         input_moment_ = run.values("input_moment");
-        fill(input_moment_);
-    }
-    for (std::size_t i = 0; i < pitch_states; ++i) {
-        if (run.table.find(channel_name(pitch_channels[i])) != nullptr) {
-            readings_.value[i] = as_read(run, channel_name(pitch_channels[i]), records);
+        if (!fill_missing(time(), input_moment_, linear_)) {
+            input_moment_.clear();
         }
     }
+    take_readings(run, records, {0, 2});
 }
 
 void PitchRun::plant_rate(std::size_t k, double t, const MotionState& y, ContactState bearing, MotionState& dydt,
@@ -216,7 +205,7 @@ public:
         return std::make_unique<PitchRun>(model, run, records);
     }
     [[nodiscard]] bool driven(const Model& /*model*/, const MeasuredRun& run) const override {
-        return column_moves(run, "input_force");
+        return column_moves(run, "input_force") || column_moves(run, "input_moment");
     }
     [[nodiscard]] std::vector<HeaveEquilibrium> equilibria(const Model& model, const Conditions& held) const override {
         return HeavePitch(model, held).equilibria();

@@ -359,14 +359,7 @@ std::optional<SeriesPrediction> predict_as_read(const Model& model, const Measur
     RecordReading other = reading.records;
     other.input_between = Between::linear;
     SeriesPrediction linear = predict_runs(model, other, data, options, progress);
-    const std::vector<double> errors = held.errors(noise);
-    const double size = static_cast<double>(errors.size()), count = independent_count(errors);
-    const double of_held = sum_of_squares(errors), of_linear = sum_of_squares(linear.errors(noise));
-    // A model that lacks something is met better by one reading or the other for reasons of its own: that tells of the
-    // input only where most of what is more than noise goes with it.
-    const bool tells = of_linear - size < 0.5 * (of_held - size);
-    const double by_held = tells ? count * std::log(of_held) : 0, by_linear = tells ? count * std::log(of_linear) : 0;
-    if (between_samples(Between::unsaid, by_held, by_linear) == Between::linear) {
+    if (between_by_errors(held.errors(noise), linear.errors(noise)) == Between::linear) {
         reading.between = "linear";
         reading.records = other;
         return linear;
@@ -482,20 +475,10 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
             velocity_score.take(row.velocity - velocity.back());
         }
     }
-    const double shorter = 0.25 * longest_run(data);
-    if (names.empty() && shorter > 0 && shorter < options.horizon) {
-        PredictOptions short_runs = options;
-        short_runs.horizon = shorter;
-        out = predict_series(model, data, short_runs, progress);
-        out.remarks.push_back({core::Problem::Severity::warning,
-                               "no run is long enough for a prediction over " +
-                                   core::format_number(options.horizon, 4) + " s: predicted over " +
-                                   core::format_number(shorter, 4) + " s",
-                               {}});
-        return out;
-    }
     if (names.empty()) {
-        throw no_prediction(data, options);
+        return predict_shorter(data, options, [&](const PredictOptions& shorter) {
+            return predict_series(model, data, shorter, progress);
+        });
     }
     remark_long_horizon(data, options, out);
     out.table.add_text("run", names);
@@ -520,6 +503,16 @@ RecordReading::Between between_samples(RecordReading::Between declared, double h
     return declared != Between::unsaid ? declared : held - linear > clearly ? Between::linear : Between::held;
 }
 
+RecordReading::Between between_by_errors(const std::vector<double>& held, const std::vector<double>& linear) {
+    const double size = static_cast<double>(held.size()), count = independent_count(held);
+    const double of_held = sum_of_squares(held), of_linear = sum_of_squares(linear);
+    // A model that lacks something is met better by one reading or the other for reasons of its own: that tells of the
+    // input only where most of what is more than noise goes with it.
+    const bool tells = of_linear - size < 0.5 * (of_held - size);
+    const double by_held = tells ? count * std::log(of_held) : 0, by_linear = tells ? count * std::log(of_linear) : 0;
+    return between_samples(RecordReading::Between::unsaid, by_held, by_linear);
+}
+
 InputReading input_reading(const Model& model, const Measurements& data, const PredictOptions& options,
                            core::Progress& progress) {
     InputReading reading;
@@ -540,40 +533,10 @@ std::string reading_text(const RecordReading& records) {
         add("heave_velocity times " + core::format_number(records.velocity_factor, 6));
     }
     if (records.input_between == RecordReading::Between::linear) {
-        add("input_force linear between its samples");
+        add("inputs linear between their samples");
     }
     return text;
 }
-
-namespace {
-
-/// Rows of other sensors that stand between the samples of an input say nothing of it: there it acts as between
-/// samples.
-void fill_missing_input(const std::vector<double>& time, std::vector<double>& values, const RecordReading& records) {
-    const auto known = [&](std::size_t i) { return std::isfinite(values[i]); };
-    std::size_t first = 0;
-    while (first < values.size() && !known(first)) {
-        ++first;
-    }
-    if (first == values.size()) {
-        return;
-    }
-    std::fill(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values[first]);
-    const bool linear = records.input_between == RecordReading::Between::linear;
-    for (std::size_t last = first, i = first + 1; i <= values.size(); ++i) {
-        if (i < values.size() && !known(i)) {
-            continue;
-        }
-        for (std::size_t k = last + 1; k < i; ++k) {
-            const double share =
-                linear && i < values.size() ? (time[k] - time[last]) / (time[i] - time[last]) : 0;  // else held
-            values[k] = share > 0 ? values[last] + share * (values[i] - values[last]) : values[last];
-        }
-        last = i;
-    }
-}
-
-}  // namespace
 
 std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records) {
     std::vector<double> values = run.has(channel) ? run.values(channel) : std::vector<double>{};
@@ -584,7 +547,7 @@ std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, 
         value *= factor;
     }
     if (channel == "input_force" && run.table.find("time") != nullptr) {
-        fill_missing_input(run.table.numbers("time"), values, records);
+        fill_missing(run.table.numbers("time"), values, records.input_between == RecordReading::Between::linear);
     }
     return values;
 }

@@ -64,6 +64,9 @@ struct Prediction {
 /// with the input read so. The one rule of predictions, the estimator and discovery.
 RecordReading::Between between_samples(RecordReading::Between declared, double held, double linear);
 
+/// The same by the errors of predictions that read the input held and linear, in noise, in one order.
+RecordReading::Between between_by_errors(const std::vector<double>& held, const std::vector<double>& linear);
+
 /// How the logs of a data set are read: as the model's [records] say, and where they do not say whether input_force is
 /// held or linear between its samples, by between_samples() of the predicted windows. What predict() and the estimator
 /// take.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::dynamics {
@@ -41,10 +42,21 @@ RecordedThrusts::RecordedThrusts(const Model& model, const MeasuredRun& run, boo
                 run.table.place(0, column->name), "a force: " + column->name + " [N]");
         }
         thrust_.push_back(column->numbers);
-        double last = 0, most = 0;
-        for (double& value : thrust_.back()) {
-            last = std::isfinite(value) ? value : last;
-            value = last;
+        const std::vector<double>& time = run.table.numbers("time");
+        const auto first = std::find_if(column->numbers.begin(), column->numbers.end(),
+                                        [](double value) { return std::isfinite(value); });
+        if (!fill_missing(time, thrust_.back(), linear)) {
+            throw core::InputError("missing", "run " + run.name + ": the column " + column->name + " has no value",
+                                   run.table.place(0, column->name), "the thrust as it acted; 0 where the jet is off");
+        }
+        constexpr double soon = 0.1;  // s
+        if (const double begins = time[static_cast<std::size_t>(first - column->numbers.begin())];
+            begins - time.front() > soon) {
+            remarks_.push_back("run " + run.name + ": " + column->name + " has no value before " +
+                               core::format_number(begins, 4) + " s: its first one is taken until then");
+        }
+        double most = 0;
+        for (const double value : thrust_.back()) {
             most = value > 1.01 * jet.maximum + 1e-9 || value < 1.01 * jet.minimum - 1e-9
                        ? std::max(most, std::abs(value))
                        : most;

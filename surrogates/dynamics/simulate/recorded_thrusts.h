@@ -11,10 +11,12 @@
 
 namespace underbody::dynamics {
 
-/// thrust_NAME of each jet of the model, N, as it acted; a missing value is that before it. Not for several threads.
+/// thrust_NAME of each jet of the model, N, as it acted, also where it has no value (fill_missing). Not for several
+/// threads.
 class RecordedThrusts {
 public:
-    /// `linear`: between samples as a line, else held. Throws core::InputError for a jet without its column in N.
+    /// `linear`: between samples as a line, else held. Throws core::InputError for a jet without its column in N, or
+    /// with one that has no value.
     RecordedThrusts(const Model& model, const MeasuredRun& run, bool linear);
     [[nodiscard]] static std::string column(const Jet& jet);
     /// Within the interval after sample k, `part` of its width on; valid until the next call.

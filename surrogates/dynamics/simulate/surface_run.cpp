@@ -33,17 +33,7 @@ MeasuredSurface::MeasuredSurface(const Model& model, const MeasuredRun& run, con
     const double fastest =
         friction * pressed / model.contact.slip_speed / std::min(motion_.inertias()[0], motion_.inertias()[1]);
     longest_step_ = std::clamp(of_stability / std::max(fastest, 1e-9), 5e-4, longest_step_);
-    const std::vector<MotionShape::State>& states = shape().states;
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        if (run.table.find(states[i].channel) != nullptr) {
-            readings_.value[i] = run.values(states[i].channel);
-        }
-        if (shape().is_place(i) && readings_.value[i].empty()) {
-            throw core::InputError("missing", "run " + run.name + " on the ground has no column " + states[i].channel,
-                                   {run.table.source, {}, {}, {}},
-                                   "position_x [m], position_y [m] and heading [rad], positive bow to starboard");
-        }
-    }
+    take_readings(run, records, {place_x, place_y, heading});
     unwrap(readings_.value[heading]);
 }
 

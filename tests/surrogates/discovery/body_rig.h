@@ -64,6 +64,7 @@ struct BodyRig {
     double thrust_gain = 1, jet_angle = 0;
     double mass_forward = 0, mass_aside = 0;  ///< m, of the centre of gravity
     double lift_factor = 1, added_mass = 0;
+    bool linear = false;      ///< thrusts go to the next command by the next sample, as a line
     bool rates_only = false;  ///< speeds and rates logged in the place of the places along the ground and the heading
     std::function<BodyLoads(const BodyMoment&)> missing = {};
 };
@@ -185,7 +186,7 @@ inline dynamics::MeasuredRun run(const BodyRig& rig, core::Random& random, const
     const double dt = 1 / rig.frequency;
     const std::array<double, 5> noise{rig.place_noise, rig.place_noise, rig.gap_noise, rig.pitch_noise,
                                       rig.heading_noise};
-    std::array<double, 5> slow{}, before = seen(rig, body, y);
+    std::array<double, 5> slow{}, before = seen(rig, body, y), acted{};
     std::array<std::vector<double>, 5> read, thrust, speeds;
     std::vector<double> time;
     double course = y[7], push = 0.3, side = 0, height = before[2], lean = 0, next = 1;
@@ -225,11 +226,17 @@ inline dynamics::MeasuredRun run(const BodyRig& rig, core::Random& random, const
                                          std::clamp(up / 2 + nose_up / 0.16, -0.3, 0.3),
                                          std::clamp(up / 2 - nose_up / 0.16, -0.3, 0.3)};
         constexpr int parts = 8;
+        const std::array<double, 5> from = rig.linear && k > 0 ? acted : acts;
+        acted = acts;
         for (std::size_t j = 0; j < 5; ++j) {
-            thrust[j].push_back(acts[j]);
+            thrust[j].push_back(from[j]);
         }
         for (int p = 0; p < parts; ++p) {
-            step(rig, body, y, acts, t + p * dt / parts, dt / parts);
+            std::array<double, 5> now{};
+            for (std::size_t j = 0; j < 5; ++j) {
+                now[j] = from[j] + (p + 0.5) / parts * (acts[j] - from[j]);
+            }
+            step(rig, body, y, now, t + p * dt / parts, dt / parts);
         }
     }
     dynamics::MeasuredRun out;

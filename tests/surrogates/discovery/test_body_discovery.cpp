@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "body_rig.h"
 #include "core/file.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/residual.h"
+#include "surrogates/dynamics/simulate/measured_motion.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/recorded_thrusts.h"
 
 namespace underbody::discovery {
 
@@ -41,6 +44,26 @@ TEST_F(BodyRuns, SpeedsAndRatesServeWherePlacesAlongTheGroundAndHeadingWereNotRe
     BodyRig rig;
     rig.rates_only = true;
     expect_at_noise(model_, rig, 7);
+}
+
+// What a logger wrote of a ramp, and what simulate writes of a continuous command.
+TEST_F(BodyRuns, ThrustsThatAreLinearBetweenTheirSamplesAreReadSo) {
+    BodyRig rig;
+    rig.linear = true;
+    expect_at_noise(model_, rig, 5);
+    const dynamics::Prediction found = dynamics::predict(model_, test::body_rig_runs(rig, 3, 61));
+    EXPECT_EQ(found.input_between, "linear");
+    EXPECT_EQ(found.input_between_from, "data");
+    dynamics::Model held = model_;
+    held.records.input_between = dynamics::RecordReading::Between::held;
+    double worst = 0;
+    for (const dynamics::ChannelError& channel : dynamics::predict(held, test::body_rig_runs(rig, 3, 61)).channels) {
+        worst = std::max(worst, channel.in_noise);
+    }
+    EXPECT_GT(worst, 3);
+    rig.linear = false;
+    expect_at_noise(model_, rig, 5);
+    EXPECT_EQ(dynamics::predict(model_, test::body_rig_runs(rig, 3, 61)).input_between, "held");
 }
 
 /// The rig's law against the effect's: with the effect in the model what is left is noise, without it is not.
@@ -126,6 +149,72 @@ TEST_F(BodyRuns, ResidualsAreInTheirAxes) {
             EXPECT_NEAR(found[other].mean, more[other], 0.1 * sizes[other]) << found[other].quantity << " of " << axis;
         }
     }
+}
+
+/// The runs with one column changed.
+dynamics::Measurements changed(dynamics::Measurements data, const std::string& name,
+                               const std::function<void(std::vector<double>&)>& change) {
+    for (dynamics::MeasuredRun& run : data.runs) {
+        core::Table table;
+        table.source = run.table.source;
+        for (const core::Column& column : run.table.columns()) {
+            std::vector<double> values = column.numbers;
+            if (column.name == name || name.empty()) {
+                change(values);
+            }
+            table.add_numbers(column.name, column.unit, values);
+        }
+        run.table = table;
+    }
+    return data;
+}
+
+std::string refusal(const dynamics::Model& model, const dynamics::Measurements& data) {
+    try {
+        dynamics::predict(model, data);
+    } catch (const core::InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST_F(BodyRuns, SayWhichColumnHasNoValue) {
+    const dynamics::Measurements data = test::body_rig_runs({}, 2, 63);
+    const auto nothing = [](std::vector<double>& values) { std::fill(values.begin(), values.end(), std::nan("")); };
+    EXPECT_THAT(refusal(model_, changed(data, "thrust_bow", nothing)),
+                testing::HasSubstr("the column thrust_bow has no value"));
+    EXPECT_THAT(refusal(model_, changed(data, "pitch", nothing)), testing::HasSubstr("has no value of pitch"));
+    EXPECT_THAT(refusal(model_, changed(data, "heading", nothing)), testing::HasSubstr("no heading and no yaw_rate"));
+    EXPECT_THAT(refusal(model_, changed(data, "position_y", nothing)), testing::HasSubstr("no places"));
+}
+
+// Rows of other sensors stand between the samples of a thrust; the first may come before it.
+TEST_F(BodyRuns, AThrustActsBetweenItsSamplesAndAsItsFirstBeforeIt) {
+    const dynamics::Measurements data = test::body_rig_runs({}, 2, 63);
+    const dynamics::MeasuredRun& run = data.runs[0];
+    const std::vector<double> thrust = run.table.numbers("thrust_bow");
+    const auto with_gaps = [&](bool linear) {
+        const dynamics::Measurements gaps = changed(data, "thrust_bow", [](std::vector<double>& values) {
+            for (const std::size_t k : {0, 1, 2, 3, 5}) {
+                values[k] = std::nan("");
+            }
+        });
+        EXPECT_TRUE(dynamics::column_moves(gaps.runs[0], "thrust_bow"));
+        dynamics::RecordedThrusts recorded(model_, gaps.runs[0], linear);
+        EXPECT_EQ(recorded.remarks().size(), 1U) << "0.16 s without a value";
+        EXPECT_EQ(recorded.at(0, 0.0)[2], thrust[4]);
+        return recorded.at(5, 0.0)[2];
+    };
+    EXPECT_EQ(with_gaps(false), thrust[4]);
+    EXPECT_NEAR(with_gaps(true), 0.5 * (thrust[4] + thrust[6]), 1e-12);
+}
+
+TEST_F(BodyRuns, ShorterThanTheHorizonArePredictedOverAQuarter) {
+    const dynamics::Measurements data =
+        changed(test::body_rig_runs({}, 2, 63), "", [](std::vector<double>& values) { values.resize(40); });
+    const dynamics::Prediction found = dynamics::predict(model_, data);
+    EXPECT_NEAR(found.horizon, 0.25 * 39 / 25, 1e-9);
+    EXPECT_THAT(found.remarks.back().message, testing::HasSubstr("predicted over 0.39 s"));
 }
 
 TEST_F(BodyRuns, SayWhatTheyLackAndWhatIsLeftOut) {

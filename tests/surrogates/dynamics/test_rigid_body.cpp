@@ -226,6 +226,28 @@ TEST(RigidBody, JetsFollowTheirCommandWithTheirLag) {
     EXPECT_NEAR(motion.state.back()[state_u], .3 / 2.99865194 * (2 - .5 * (1 - std::exp(-4))), 1e-6);
 }
 
+// A row stands for what acts from then on: whoever takes the rows for a log holds each thrust up to the next one.
+TEST(RigidBody, ARowAtASampleOfTheControllerHasItsNewThrust) {
+    Model model = evie();
+    model.jets = {Jet{"push", {0, 0, 0}, {1, 0, 0}, 0, 1, 0}};
+    const RigidBody body(model);
+    BodyState y{};
+    y[state_z] = -10;
+    BodyOptions options;
+    options.duration = 2;
+    options.output_step = options.command_step = .1;
+    const auto command = [](double t) { return .5 + .4 * std::sin(3 * t); };
+    const BodyTrajectory motion = simulate_body(
+        body, y, [&](double t, const BodyState&) { return std::vector<double>{command(t)}; }, options);
+    ASSERT_EQ(motion.time.size(), 21U);
+    double speed = 0;  // S_x u' = F
+    for (std::size_t k = 0; k + 1 < motion.time.size(); ++k) {
+        EXPECT_NEAR(motion.thrust[k][0], command(motion.time[k]), 1e-9) << k;
+        EXPECT_NEAR(motion.state[k][state_u], speed, 1e-6) << k;
+        speed += .1 * motion.thrust[k][0] / 2.99865194;
+    }
+}
+
 TEST(RigidBody, LinearisesToTheSurfaceModel) {
     const RigidBody body(evie());
     BodyState y{};
