@@ -173,13 +173,14 @@ core::Figure section_figure(const SurfaceMesh& body, const std::string& name) {
         dimension(figure, 1e3 * base.x.low, y, 1e3 * base.x.high, y, tick, base.x.size());
     }
     if (const PatchExtent bump = extent_of(body, "protrusion"); bump.any) {
+        const std::string length = mm(bump.x.size());  // one unit for both: the text has its room in a small picture
         figure.notes.push_back(
-            {500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.5 * step,
-             "protrusion " + mm(bump.x.size()) + " long, " + mm(height_over_base(body, "protrusion")) + " high"});
+            {500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.9 * step,
+             "protrusion " + length.substr(0, length.find(' ')) + " × " + mm(height_over_base(body, "protrusion"))});
     }
     if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
         figure.notes.push_back(
-            {500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.z.high + step, "nozzle " + mm(nozzle.x.size())});
+            {500 * (nozzle.x.low + nozzle.x.high), 1e3 * nozzle.z.high + 1.8 * step, "nozzle " + mm(nozzle.x.size())});
     }
     return figure;
 }
@@ -231,10 +232,11 @@ core::Figure sheet_figure(const std::vector<NamedBody>& bodies, const std::strin
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const Box box = bounding_box(*bodies[i].mesh);
         const double x = static_cast<double>(i % columns) * 1.15 * width,
-                     y = -static_cast<double>(i / columns) * 1.35 * height;
+                     y = -static_cast<double>(i / columns) * 1.6 * height;
         add_section(figure, *bodies[i].mesh, x, y - 1e3 * box.lower.z, 1);
         add_underside(figure, *bodies[i].mesh, x, y - 0.05 * height - 1e3 * box.upper.y, 1);
-        figure.notes.push_back({x, y + 1e3 * (box.upper.z - box.lower.z) + 0.06 * height, bodies[i].name});
+        // Over the left end, with room for a line of text below the next row: every name stands at its own body.
+        figure.notes.push_back({x - 0.5 * width, y + 1e3 * (box.upper.z - box.lower.z), bodies[i].name});
     }
     return figure;
 }

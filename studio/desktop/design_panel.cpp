@@ -53,31 +53,37 @@ void DesignPanel::build() {
     auto* all = new QHBoxLayout(this);
     auto* views = new QSplitter(Qt::Vertical);
     all->addWidget(views, 1);
-    auto* upper = new QSplitter(Qt::Horizontal);
+    upper_ = new QSplitter(Qt::Horizontal);
+    QWidget* body = nullptr;
     if (Scene::possible()) {
         scene_ = std::make_unique<Scene>(this);
         scene_->widget()->setMinimumSize(200, 160);
         scene_->widget()->installEventFilter(this);
         scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
-        upper->addWidget(scene_->widget());
+        body = scene_->widget();
     } else {
         auto* why = new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer.");
         why->setWordWrap(true);
-        upper->addWidget(why);
+        body = why;
     }
     section_ = new PlotView(this);
-    upper->addWidget(section_);
+    body_cell_ = new ViewCell(*this, "body", "Body", body);
+    section_cell_ = new ViewCell(*this, "section", "Section", section_);
+    upper_->addWidget(body_cell_);
+    upper_->addWidget(section_cell_);
     lift_plot_ = new PlotView(this);
     map_plot_ = new PlotView(this);
     constexpr int room = 800;  // px: narrower ones are all legend
-    views->addWidget(upper);
-    lift_or_map_ = new SideBySide(lift_plot_, "Lift", map_plot_, "Stability map", room);
+    views->addWidget(upper_);
+    lift_or_map_ = new SideBySide(new ViewCell(*this, "lift", "Lift", lift_plot_), "Lift",
+                                  new ViewCell(*this, "map", "Stability map", map_plot_), "Stability map", room);
     views->addWidget(lift_or_map_);
     connect(lift_or_map_->tabs(), &QTabBar::currentChanged, this, [this](int tab) {
         desk_.act({"show", tab == 1 ? "map" : "lift"});
     });
-    views->setStretchFactor(0, 3);
-    views->setStretchFactor(1, 2);
+    views->setStretchFactor(0, 1);
+    views->setStretchFactor(1, 1);
+    views->setSizes({400, 400});
     auto* side = new QWidget;
     side->setFixedWidth(390);
     all->addWidget(side);
@@ -166,7 +172,7 @@ void DesignPanel::connect_row(ParameterRow* row, const std::string& verb, const 
 void DesignPanel::make_rows() {
     std::string part;
     const auto heading = [&](const std::string& text) {
-        auto* label = new QLabel("<b>" + qt(text) + "</b>");
+        auto* label = new QLabel("<b>" + qt(text).replace('_', ' ') + "</b>");
         parameter_column_->addWidget(label);
     };
     for (const auto& parameter : geometry::parameter_names()) {
@@ -289,6 +295,10 @@ std::shared_ptr<const LiveBody> DesignPanel::remembered(const std::string& key) 
 
 void DesignPanel::draw_again(bool fresh) {
     lift_or_map_->show_right(state().design.map);
+    lift_or_map_->want(shows("lift"), shows("map"));
+    body_cell_->setVisible(shows("body"));
+    section_cell_->setVisible(shows("section"));
+    upper_->setVisible(shows("body") || shows("section"));
     const QSignalBlocker quiet(choice_);
     choice_->clear();
     for (const auto& name : shape_names(state(), session())) {
@@ -332,6 +342,7 @@ void DesignPanel::draw_again(bool fresh) {
         }
     } else {
         show_card();
+        draw_section();
     }
     show_lift();
 }
@@ -429,11 +440,30 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
         }
         scene_->render();
     }
-    section_->show_figure(body->section, true);
+    draw_section();
     show_card();
     if (body->certificate && !body->added_mass && body->contact.empty() && !jobs_.busy("design rest")) {
         rest_->start();  // its added mass was interrupted
     }
+}
+
+/// The body before as a thin line behind the one that is shown.
+void DesignPanel::draw_section() {
+    if (!shown_) {
+        return;
+    }
+    core::Figure figure = shown_->section;
+    if (before_) {
+        figure.title += " (thin: before)";
+        for (core::FigureCurve curve : before_->section.curves) {
+            if (curve.width >= 2) {  // the outline, not its dimensions
+                curve.width = 0.8;
+                curve.colour = core::palette(1);
+                figure.curves.insert(figure.curves.begin(), curve);
+            }
+        }
+    }
+    section_->show_figure(figure, true);
 }
 
 void DesignPanel::fit_view() { scene_->look_from("iso", "+x", "+z"); }

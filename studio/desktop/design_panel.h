@@ -11,6 +11,7 @@
 
 class QComboBox;
 class QLabel;
+class QSplitter;
 class QTableWidget;
 class QTimer;
 class QVBoxLayout;
@@ -28,6 +29,7 @@ namespace underbody::studio {
 class ParameterRow;
 class PlotView;
 class SideBySide;
+class ViewCell;
 
 /// The stability map of a shape.
 struct ShapeMap {
@@ -74,6 +76,7 @@ private:
     void take(const std::shared_ptr<const LiveBody>& body, const std::string& key);
     void show_body(const std::shared_ptr<const LiveBody>& body);
     void fit_view();
+    void draw_section();
     void show_card();
     void show_lift();
     void learn();
@@ -135,6 +138,9 @@ private:
     QLabel* lift_label_ = nullptr;
     QLabel* map_label_ = nullptr;
     PlotView* section_ = nullptr;
+    QSplitter* upper_ = nullptr;
+    ViewCell* body_cell_ = nullptr;
+    ViewCell* section_cell_ = nullptr;
     SideBySide* lift_or_map_ = nullptr;
     PlotView* lift_plot_ = nullptr;
     PlotView* map_plot_ = nullptr;

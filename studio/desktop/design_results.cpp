@@ -115,6 +115,7 @@ void DesignPanel::make_before() {
                         take(body, key);
                         before_ = body;
                         show_card();
+                        draw_section();
                     };
                 },
                 true);

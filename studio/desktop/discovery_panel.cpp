@@ -13,6 +13,7 @@
 #include <QTextBrowser>
 #include <QTimer>
 #include <QUrl>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -60,7 +61,29 @@ Shown shown_in(const json& object) {
     const std::string unit = object.is_object() && object.contains("unit") && object["unit"].is_string()
                                  ? object["unit"].get<std::string>()
                                  : "";
-    return unit == "m" ? Shown{1000, "mm"} : unit == "m/s" ? Shown{1000, "mm/s"} : Shown{1, unit};
+    const double value = object.is_object() && object.contains("value") && object["value"].is_number()
+                             ? std::abs(object["value"].get<double>())
+                             : 1;
+    return unit == "m"                               ? Shown{1000, "mm"}
+           : unit == "m/s"                           ? Shown{1000, "mm/s"}
+           : unit == "N" && value > 0 && value < 0.1 ? Shown{1000, "mN"}  // as the sentence above says it
+                                                     : Shown{1, unit};
+}
+
+/// A white picture with dark lines on a dark page: light where it was dark, of the same hues.
+QImage on_dark(const QImage& picture, const QColor& ground) {
+    QImage image = picture.convertToFormat(QImage::Format_RGB32);
+    const double low = ground.value(), share = (255 - low) / 255;
+    for (int y = 0; y < image.height(); ++y) {
+        auto* line = reinterpret_cast<QRgb*>(image.scanLine(y));
+        for (int x = 0; x < image.width(); ++x) {
+            const int r = qRed(line[x]), g = qGreen(line[x]), b = qBlue(line[x]);
+            const int turned = 255 - std::max({r, g, b}) - std::min({r, g, b});
+            const auto shade = [&](int value) { return static_cast<int>(low + share * (value + turned)); };
+            line[x] = qRgb(shade(r), shade(g), shade(b));
+        }
+    }
+    return image;
 }
 
 QString scaled(const json& object, const char* key, double factor, int digits) {
@@ -222,13 +245,14 @@ void DiscoveryPanel::show_measurement() {
     const auto* found = session().results.document("discovery/" + name);
     const auto* residual = session().results.document("residual/" + name);
     const bool accepted = state().accepted.contains(name);
+    const bool verdict = shows("verdict");
     if (found != nullptr) {
         const json document = json::parse(*found, nullptr, false);
         const bool missing = document.is_object() && document.value("verdict", "none") != "none";
         accept_->setEnabled(missing || accepted);
         write_->setEnabled(missing);
         page += accepted ? "<p><b>Accepted: the found model counts as the declared one.</b></p>" : "";
-        page += discovery_page(*found);
+        page += verdict ? discovery_page(*found) : QString();
     } else if (residual == nullptr) {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
     }
@@ -237,11 +261,14 @@ void DiscoveryPanel::show_measurement() {
     const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent);
     const int width = std::min(std::max(300, drawn_for_ - bar - 24), 900);
     for (const auto& [key, png] : session().results.pictures) {
-        if (key.find(name) == std::string::npos ||
+        if (!shows("pictures") || key.find(name) == std::string::npos ||
             (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
             continue;
         }
-        const QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
+        QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
+        if (const QColor ground = palette().base().color(); ground.lightness() < 128) {
+            image = on_dark(image, ground);
+        }
         const QString url = "picture://" + QString::fromStdString(key).toHtmlEscaped();
         page_->document()->addResource(
             QTextDocument::ImageResource, QUrl(url),

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "geometry/body/body_figures.h"
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/qt_text.h"
 
@@ -24,12 +23,14 @@ void ExplorePanel::build_head(QVBoxLayout& column) {
     y_ = new QComboBox;
     for (auto* box : {x_, y_}) {
         box->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+        box->setMaximumWidth(132);  // the ranges beside it are what is typed
     }
     x_->setAccessibleName("Along the scatter plot");
     y_->setAccessibleName("Up the scatter plot");
     brush_ = new QLineEdit;
     brush_->setPlaceholderText("all; or gap=2mm:5mm, lift_force=0:0.3");
     brush_->setAccessibleName("Ranges that are kept");
+    brush_->setMinimumWidth(180);
     brush_->setToolTip("The ranges that are dragged on the axes, as numbers: change them and press Enter");
     brush_->setClearButtonEnabled(true);
     count_ = new QLabel;

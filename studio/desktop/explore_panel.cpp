@@ -9,7 +9,6 @@
 #include <QSignalBlocker>
 #include <QSplitter>
 #include <QStackedWidget>
-#include <QTabWidget>
 #include <QTableWidget>
 #include <algorithm>
 #include <cmath>
@@ -25,6 +24,7 @@
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
+#include "studio/desktop/side_by_side.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/analysis/figures.h"
 
@@ -94,8 +94,9 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     auto* halves = new QSplitter(Qt::Vertical);
     column.addWidget(halves, 1);
     parallel_ = new ParallelView(this);
-    halves->addWidget(parallel_);
-    auto* lower = new QSplitter(Qt::Horizontal);
+    lines_cell_ = new ViewCell(*this, "lines", "Lines", parallel_);
+    halves->addWidget(lines_cell_);
+    lower_ = new QSplitter(Qt::Horizontal);
     table_ = new QTableWidget;
     table_->setAccessibleName("What is kept");
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -107,16 +108,18 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     pictures_ = new QStackedWidget;
     pictures_->addWidget(bodies_);
     pictures_->addWidget(cases_);
-    pictures_or_points_ = new QTabWidget;
-    pictures_or_points_->setDocumentMode(true);
-    pictures_or_points_->addTab(scatter_, "Points");
-    pictures_or_points_->addTab(pictures_, "Pictures");
-    lower->addWidget(table_);
-    lower->addWidget(pictures_or_points_);
-    halves->addWidget(lower);
+    constexpr int room = 640;  // px: narrower ones are too small to compare anything
+    table_cell_ = new ViewCell(*this, "table", "Table", table_);
+    pictures_cell_ = new ViewCell(*this, "pictures", "Pictures", pictures_);
+    pictures_cell_->on_show = [this] { draw_pictures(); };
+    points_or_pictures_ =
+        new SideBySide(new ViewCell(*this, "points", "Points", scatter_), "Points", pictures_cell_, "Pictures", room);
+    lower_->addWidget(table_cell_);
+    lower_->addWidget(points_or_pictures_);
+    halves->addWidget(lower_);
     halves->setSizes({260, 340});
     connect(scatter_, &PlotView::hovered, this, &Panel::remark);
-    connect(pictures_or_points_, &QTabWidget::currentChanged, this, [this](int tab) {
+    connect(points_or_pictures_->tabs(), &QTabBar::currentChanged, this, [this](int tab) {
         desk_.act({"show", tab == 1 ? "pictures" : "points"});
     });
     connect(parallel_, &ParallelView::brushed, this, [this](const QString& name, double low, double high) {
@@ -226,9 +229,7 @@ void ExplorePanel::draw_again(bool) {
     const bool shapes = state().explore.shapes;
     what_->setCurrentIndex(shapes ? 1 : 0);
     vary_row_->setVisible(shapes);
-    const QSignalBlocker quiet_tabs(pictures_or_points_);
-    pictures_or_points_->setCurrentIndex(state().explore.pictures ? 1 : 0);
-    pictures_or_points_->setTabText(1, shapes ? "Bodies from below" : "Pictures of cases");
+    show_cells();
     pictures_->setCurrentIndex(shapes ? 0 : 1);
     if (!vary_->hasFocus() || vary_->text().isEmpty()) {
         QStringList parts;
@@ -279,6 +280,17 @@ void ExplorePanel::draw_again(bool) {
     fill_table();
     draw_scatter();
     draw_pictures();
+}
+
+void ExplorePanel::show_cells() {
+    const QString pictures = state().explore.shapes ? "Bodies from below" : "Pictures of cases";
+    pictures_cell_->set_title(pictures);
+    points_or_pictures_->tabs()->setTabText(1, pictures);
+    points_or_pictures_->show_right(state().explore.pictures);
+    points_or_pictures_->want(shows("points"), shows("pictures"));
+    lines_cell_->setVisible(shows("lines"));
+    table_cell_->setVisible(shows("table"));
+    lower_->setVisible(shows("table") || shows("points") || shows("pictures"));
 }
 
 void ExplorePanel::show_count() {
@@ -384,7 +396,7 @@ void ExplorePanel::draw_scatter() {
 
 /// The kept bodies, seen from below, or the pictures of the kept cases.
 void ExplorePanel::draw_pictures() {
-    if (!state().explore.pictures) {
+    if (!pictures_cell_->isVisible()) {
         return;
     }
     if (!state().explore.shapes) {
@@ -412,7 +424,7 @@ void ExplorePanel::draw_pictures() {
 
 bool ExplorePanel::has_picture() const { return scatter_->has_figure(); }
 void ExplorePanel::export_picture(const std::filesystem::path& path) {
-    const bool bodies = state().explore.shapes && state().explore.pictures && bodies_->has_figure();
+    const bool bodies = state().explore.shapes && !scatter_->isVisible() && bodies_->has_figure();
     (bodies ? bodies_ : scatter_)->write(path);
 }
 void ExplorePanel::export_table(const std::filesystem::path& path) { core::write_csv(path, rows().selected(kept_)); }

@@ -12,9 +12,9 @@ class QComboBox;
 class QLabel;
 class QLineEdit;
 class QPushButton;
+class QSplitter;
 class QStackedWidget;
 class QTableWidget;
-class QTabWidget;
 class QVBoxLayout;
 
 namespace underbody::studio {
@@ -22,6 +22,8 @@ namespace underbody::studio {
 class CasePictures;
 class ParallelView;
 class PlotView;
+class SideBySide;
+class ViewCell;
 
 /// Shapes that were made, with what is known of each.
 struct MadeShapes {
@@ -56,6 +58,7 @@ private:
     void draw_scatter();
     void draw_pictures();
     void show_count();
+    void show_cells();
     void type_brush();
     void type_vary();
     void add_parameter(const QString& name);
@@ -76,7 +79,11 @@ private:
     QLabel* count_ = nullptr;
     QPushButton* take_ = nullptr;
     ParallelView* parallel_ = nullptr;
-    QTabWidget* pictures_or_points_ = nullptr;
+    QSplitter* lower_ = nullptr;
+    ViewCell* lines_cell_ = nullptr;
+    ViewCell* table_cell_ = nullptr;
+    ViewCell* pictures_cell_ = nullptr;
+    SideBySide* points_or_pictures_ = nullptr;
     PlotView* scatter_ = nullptr;
     QStackedWidget* pictures_ = nullptr;  ///< bodies, or cases
     PlotView* bodies_ = nullptr;

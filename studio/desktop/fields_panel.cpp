@@ -60,8 +60,8 @@ void FieldsPanel::build() {
     all->addWidget(rolled);
     auto* right = new QVBoxLayout;
     all->addLayout(right, 1);
-    auto* middle = new QWidget;
-    stack_ = new QStackedLayout(middle);
+    fields_ = new QWidget;
+    stack_ = new QStackedLayout(fields_);
     empty_ = new QLabel("Choose one to six cases in the tree on the left (Ctrl+click adds one), or drop CFD files");
     empty_->setAlignment(Qt::AlignCenter);
     empty_->setWordWrap(true);
@@ -72,7 +72,7 @@ void FieldsPanel::build() {
     grid_->setSpacing(3);
     stack_->addWidget(cells);
     auto* halves = new QSplitter(Qt::Vertical);
-    halves->addWidget(middle);
+    halves->addWidget(fields_);
     numbers_ = new CompareNumbers(desk_, halves);
     halves->addWidget(numbers_);
     halves->setStretchFactor(0, 4);
@@ -179,6 +179,8 @@ void FieldsPanel::show_numbers() {
         }
     }
     numbers_->show_cases(std::move(cases), state().fields.difference);
+    fields_->setVisible(shows("fields"));
+    numbers_->setVisible(numbers_->isVisibleTo(numbers_->parentWidget()) && shows("numbers"));
 }
 
 void FieldsPanel::taken(std::size_t index, const std::shared_ptr<const postproc::Field>& field,

@@ -138,6 +138,7 @@ private:
     FieldView checked_;   ///< whose names of arrays and zones were looked for in the files
     QGridLayout* grid_ = nullptr;
     QStackedLayout* stack_ = nullptr;
+    QWidget* fields_ = nullptr;
     QLabel* empty_ = nullptr;
     QListWidget* zones_ = nullptr;
     QComboBox* array_ = nullptr;

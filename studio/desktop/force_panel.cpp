@@ -4,6 +4,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
+#include <QGridLayout>
 #include <QHeaderView>
 #include <QLabel>
 #include <QSignalBlocker>
@@ -70,8 +71,12 @@ void ForcePanel::build() {
 
     auto* right = new QVBoxLayout;
     all->addLayout(right, 1);
+    auto* cells = new QWidget;
+    grid_ = new QGridLayout(cells);
+    grid_->setContentsMargins(0, 0, 0, 0);
+    right->addWidget(cells, 1);
     plot_ = new PlotView(this);
-    right->addWidget(plot_, 1);
+    grid_->addWidget(plot_, 0, 0);
     connect(plot_, &PlotView::hovered, this, &Panel::remark);
     connect(plot_, &PlotView::clicked, this, &ForcePanel::point_clicked);
     list_ = new QTableWidget(0, 9);
@@ -172,6 +177,7 @@ void ForcePanel::choose_table(bool fresh) {
     if (!why.isEmpty()) {
         table_.reset();
         spec_ = {};
+        hide_beside();
         list_->setRowCount(0);
         about_->clear();
         reach_->clear();
@@ -190,6 +196,7 @@ void ForcePanel::choose_table(bool fresh) {
 void ForcePanel::show_cases() {
     table_.reset();
     spec_ = {};
+    hide_beside();
     list_->hide();
     reach_->clear();
     about_->setText(
@@ -248,109 +255,39 @@ void ForcePanel::show_table() {
     redraw();
 }
 
-void ForcePanel::fill_axes() {
-    const QSignalBlocker quiet(view_);
-    view_->clear();
-    const auto& axes = table_->axes();
-    for (const auto& axis : axes) {
-        view_->addItem("curve over " + qt(axis.name), "curve " + qt(axis.name));
-    }
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            if (i != k) {
-                view_->addItem("curves over " + qt(axes[i].name) + ", one for each " + qt(axes[k].name),
-                               "family " + qt(axes[i].name) + " " + qt(axes[k].name));
-            }
-            if (i < k) {
-                view_->addItem("map over " + qt(axes[i].name) + " and " + qt(axes[k].name),
-                               "map " + qt(axes[i].name) + " " + qt(axes[k].name));
-            }
-        }
-    }
-    const int at = view_->findData(qt(settings().shown));
-    view_->setCurrentIndex(at >= 0 ? at : 0);
-}
-
-QStringList ForcePanel::view() const { return view_->currentData().toString().split(' '); }
-
-double ForcePanel::held_value(const std::string& name) const {
-    if (const auto at = settings().held.find(name); at != settings().held.end()) {
-        return at->second;
-    }
-    const auto& axis = table_->axes()[tables::axis_index(*table_, name)];
-    return axis.lower < 0 && axis.upper > 0 ? 0 : axis.lower;
-}
-
-void ForcePanel::fill_held() {
-    const QString wanted = qt(spec_.name) + view().join(' ');
-    if (held_for_ != wanted) {
-        for (const auto& held : held_) {
-            held_form_->removeRow(held.row);
-        }
-        held_.clear();
-        held_for_ = wanted;
-        for (const auto& axis : table_->axes()) {
-            if (view().mid(1).contains(qt(axis.name))) {
-                continue;
-            }
-            auto* row = new ParameterRow(qt(axis.name), "held at this value", axis.unit,
-                                         tables::shown_unit(*table_, axis.name));
-            held_form_->addRow(row);
-            held_.push_back({axis.name, row});
-            const auto text = [name = axis.name, unit = axis.unit](double value) {
-                return "held." + name + "=" + core::format_number(value) + (unit == "1" ? "" : " " + unit);
-            };
-            connect(row, &ParameterRow::moved, this,
-                    [this, text](double value, const QString& gesture) { act(text(value), gesture); });
-            connect(row, &ParameterRow::entered, this, [this, text](double value) { act(text(value)); });
-            connect(row, &ParameterRow::released, this, [this] { desk_.end_gesture(); });
-        }
-    }
-    for (const auto& held : held_) {
-        const auto& axis = table_->axes()[tables::axis_index(*table_, held.name)];
-        held.row->show_value(held_value(held.name), axis.lower, axis.upper, false);
-    }
-}
-
 void ForcePanel::redraw() {
     tables::FigureOptions options;
     options.axis = view().value(1).toStdString();
     const auto& axis = table_->axes()[tables::axis_index(*table_, options.axis)];
     logarithmic_->setEnabled(axis.lower > 0);
-    options.logarithmic =
-        axis.lower > 0 && settings().logarithmic.value_or(tables::spans_decades(axis.lower, axis.upper));
-    logarithmic_->setChecked(*options.logarithmic);
-    for (const auto& held : held_) {
-        options.held.emplace_back(held.name, held_value(held.name));
-    }
+    logarithmic_->setChecked(axis.lower > 0 &&
+                             settings().logarithmic.value_or(tables::spans_decades(axis.lower, axis.upper)));
     if (has_weight() && options.axis == "gap") {
         tables::EquilibriumOptions equilibria;
         equilibria.net_weight = net_weight();
         equilibria.virtual_mass = virtual_mass();
-        equilibria.held = options.held;
+        for (const auto& one : table_->axes()) {
+            if (one.name != options.axis) {
+                equilibria.held.emplace_back(one.name, held_value(one.name));
+            }
+        }
         equilibria.axis = options.axis;
         options.equilibria = equilibria;
     }
-    const std::string second = view().value(2).toStdString();
     list_->setRowCount(0);
     list_->hide();
     at_rest_->stop();
     jobs_.cancel("equilibria");
     reach_->clear();
     try {
-        if (view().value(0) == "map") {
-            plot_->show_figure(tables::map_figure(*table_, options.axis, second, options), true);
-        } else if (view().value(0) == "family") {
-            plot_->show_figure(tables::family_figure(*table_, options.axis, second, options), true);
-        } else {
-            plot_->show_figure(tables::curve_figure(*table_, options), true);
-            if (options.equilibria) {
-                list_equilibria(*options.equilibria);
-            }
+        plot_->show_figure(figure_of(view(), options), true);
+        if (options.equilibria && view().value(0) == "curve") {
+            list_equilibria(*options.equilibria);
         }
     } catch (const core::Error& error) {
         plot_->show_text(qt(error.what()));
     }
+    show_beside();
 }
 
 /// A click on a point of the table selects the case that it is of.
@@ -439,7 +376,7 @@ void ForcePanel::show_equilibria(const tables::Equilibria& found) {
             list_->setItem(row, column, item);
         }
     }
-    list_->setVisible(!found.all.empty());
+    list_->setVisible(!found.all.empty() && shows("equilibria"));
     list_->resizeColumnsToContents();
     list_->horizontalHeader()->setStretchLastSection(true);
 }

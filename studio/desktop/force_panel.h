@@ -9,9 +9,14 @@
 class QCheckBox;
 class QComboBox;
 class QFormLayout;
+class QGridLayout;
 class QLabel;
 class QTableWidget;
 class QTimer;
+
+namespace underbody::core {
+struct Figure;
+}
 
 namespace underbody::tables {
 class ForceTable;
@@ -41,6 +46,11 @@ public:
     /// Name of the [[table]] that is shown.
     [[nodiscard]] const std::string& table_name() const { return spec_.name; }
 
+    [[nodiscard]] std::vector<View> views() const override;
+    void choose_view(const std::string& name, bool shown) override;
+    /// Views of the table beside the first one, of which those that are not shown are hidden.
+    [[nodiscard]] const std::vector<PlotView*>& beside() const { return beside_; }
+
 protected:
     void draw_again(bool session) override;
 
@@ -59,6 +69,9 @@ private:
     void fill_axes();
     void fill_held();
     void redraw();
+    [[nodiscard]] core::Figure figure_of(const QStringList& view, tables::FigureOptions options) const;
+    void show_beside();
+    void hide_beside();
     void list_equilibria(tables::EquilibriumOptions options);
     void show_equilibria(const tables::Equilibria& found);
     [[nodiscard]] QStringList view() const;
@@ -79,7 +92,9 @@ private:
     ParameterRow* mass_ = nullptr;
     QLabel* about_ = nullptr;
     QLabel* reach_ = nullptr;
+    QGridLayout* grid_ = nullptr;
     PlotView* plot_ = nullptr;
+    std::vector<PlotView*> beside_;
     QTableWidget* list_ = nullptr;
     QTimer* at_rest_ = nullptr;  ///< runs out when no slider has moved for a while
     std::vector<Held> held_;

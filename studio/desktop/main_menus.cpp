@@ -16,7 +16,9 @@
 #include <QStackedWidget>
 #include <QTabWidget>
 #include <QToolBar>
+#include <QToolButton>
 #include <QUrl>
+#include <algorithm>
 
 #include "cases/accept.h"
 #include "cases/ask_cfd.h"
@@ -126,6 +128,9 @@ void MainWindow::build_view_menu() {
         action->setCheckable(true);
         workspaces_->addAction(action);
     }
+    views_ = menu->addMenu("&Views in this workspace");
+    views_->setObjectName("views");
+    connect(views_, &QMenu::aboutToShow, this, &MainWindow::fill_views);
     menu->addSeparator();
     const auto toggle = [&](QDockWidget* dock, const QString& text, const QString& key) {
         auto* action = dock->toggleViewAction();
@@ -164,6 +169,21 @@ void MainWindow::build_view_menu() {
     full->setCheckable(true);
 }
 
+/// What may be chosen is another in each workspace.
+void MainWindow::fill_views() {
+    views_->clear();
+    Panel* panel = current();
+    const auto all = panel->views();
+    const auto shown = std::count_if(all.begin(), all.end(), [](const Panel::View& view) { return view.shown; });
+    for (const auto& view : all) {
+        auto* action =
+            views_->addAction(view.title, panel, [panel, view] { panel->choose_view(view.name, !view.shown); });
+        action->setCheckable(true);
+        action->setChecked(view.shown);
+        action->setEnabled(!view.shown || shown > 1);
+    }
+}
+
 void MainWindow::build_help_menu() {
     auto* menu = menuBar()->addMenu("&Help");
     add(menu, "&Keys", "F1", [this] { show_keys(this, actions()); });
@@ -188,6 +208,13 @@ void MainWindow::build_tool_bar() {
     follow(forth, redo_);
     bar->addSeparator();
     bar->addActions(workspaces_->actions());
+    bar->addSeparator();
+    auto* views = new QToolButton;
+    views->setText("Views");
+    views->setToolTip("Which views stand in this workspace, from one to six (Alt+V, V)");
+    views->setMenu(views_);
+    views->setPopupMode(QToolButton::InstantPopup);
+    bar->addWidget(views);
 }
 
 bool MainWindow::write_chosen(QString path, const QStringList& endings,

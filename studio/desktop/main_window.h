@@ -89,6 +89,7 @@ private:
     void build_edit_menu();
     void build_study_menu();
     void build_view_menu();
+    void fill_views();
     void build_help_menu();
     QAction* add(QMenu* menu, const QString& text, const QString& key, const std::function<void()>& act);
     void follow_state();
@@ -130,6 +131,7 @@ private:
     QLabel* doing_ = nullptr;
     QToolButton* cancel_ = nullptr;
     QMenu* recent_ = nullptr;
+    QMenu* views_ = nullptr;
     QActionGroup* workspaces_ = nullptr;
     QAction* undo_ = nullptr;
     QAction* redo_ = nullptr;

@@ -2,6 +2,8 @@
 
 #include <QShowEvent>
 
+#include "studio/desktop/qt_text.h"
+
 namespace underbody::studio {
 
 Panel::Panel(Desk& desk, QWidget* parent) : QWidget(parent), desk_(desk), jobs_(desk.jobs()) {
@@ -24,6 +26,27 @@ void Panel::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
     if (event->type() == QEvent::PaletteChange) {
         out_of_date(false);
+    }
+}
+
+std::vector<Panel::View> Panel::views() const {
+    std::vector<View> all;
+    for (const auto& view : workspace_views(objectName().toStdString())) {
+        all.push_back({view.name, qt(view.title), shows(view.name)});
+    }
+    return all;
+}
+
+void Panel::choose_view(const std::string& name, bool shown) {
+    const std::string workspace = objectName().toStdString();
+    Words words = {"cells", workspace};
+    for (const auto& view : workspace_views(workspace)) {
+        if (view.name == name ? shown : shows(view.name)) {
+            words.push_back(view.name);
+        }
+    }
+    if (words.size() > 2) {  // without any name all would be shown
+        desk_.act(words);
     }
 }
 

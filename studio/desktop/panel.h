@@ -15,6 +15,17 @@ class Panel : public QWidget {
 public:
     Panel(Desk& desk, QWidget* parent);
 
+    /// A view that has a cell in the workspace, or may have one.
+    struct View {
+        std::string name;
+        QString title;
+        bool shown = true;
+    };
+    /// What may be chosen, in the order of the cells.
+    [[nodiscard]] virtual std::vector<View> views() const;
+    /// Shows or hides one; the last one stays.
+    virtual void choose_view(const std::string& name, bool shown);
+
     /// File > Export picture: false when the panel has none. `picture_endings`: ".png", ".pdf".
     [[nodiscard]] virtual bool has_picture() const { return false; }
     [[nodiscard]] virtual QStringList picture_endings() const { return {".png", ".pdf"}; }
@@ -37,6 +48,7 @@ protected:
     void showEvent(QShowEvent* event) override;
     void changeEvent(QEvent* event) override;
 
+    [[nodiscard]] bool shows(const std::string& view) const { return state().shows(objectName().toStdString(), view); }
     [[nodiscard]] const State& state() const { return desk_.state(); }
     [[nodiscard]] const Session& session() const { return desk_.session(); }
     Desk& desk_;

@@ -11,6 +11,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QFormLayout>
+#include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
@@ -48,7 +49,7 @@ void RegionPanel::build() {
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    scroll->setFixedWidth(310);
+    scroll->setFixedWidth(330);
     auto* left = new QVBoxLayout(controls);
     left->setContentsMargins(0, 0, 0, 0);
     all->addWidget(scroll, 0);
@@ -70,16 +71,16 @@ void RegionPanel::build() {
 
     auto* plots = new QSplitter(Qt::Vertical);
     all->addWidget(plots, 1);
-    map_ = new PlotView(this);
+    map_cells_ = new QWidget;
+    grid_ = new QGridLayout(map_cells_);
+    grid_->setContentsMargins(0, 0, 0, 0);
     motion_ = new PlotView(this);
-    plots->addWidget(map_);
+    plots->addWidget(map_cells_);
     plots->addWidget(motion_);
     plots->setStretchFactor(0, 3);
     plots->setStretchFactor(1, 2);
     say("Open a study with a stability region");
-    connect(map_, &PlotView::hovered, this, &Panel::remark);
     connect(motion_, &PlotView::hovered, this, &Panel::remark);
-    connect(map_, &PlotView::clicked, this, &RegionPanel::start_from);
     connect(reset_, &QPushButton::clicked, this, [this] { act("as_declared="); });
 }
 
@@ -195,11 +196,15 @@ void RegionPanel::say(const QString& text) {
     known_.reset();
     trajectory_.reset();
     map_of_.clear();
+    about_of_.clear();
     motion_of_.clear();
     about_->clear();
     changes_label_->clear();
     reset_->setEnabled(false);
-    map_->show_text(text);
+    place_maps();
+    for (const auto& kind : kinds()) {
+        map(kind).show_text(text);
+    }
     motion_->show_text("Click a start in the map to see its motion");
 }
 
@@ -224,6 +229,7 @@ void RegionPanel::draw_again(bool) {
     cells_->setValue(settings().cells);
     duration_->show_number(duration());
     fill_kinds();
+    place_maps();
     if (!spec_.forces.empty() && session().results.loads.rows() == 0) {
         say("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
     } else if (other || !model_) {
@@ -330,13 +336,13 @@ bool RegionPanel::by_ratio() const {
     return false;
 }
 
-std::string RegionPanel::map_key() const {
+std::string RegionPanel::map_key(const std::string& kind) const {
     const RegionView& view = settings();
     std::string key = spec_.name + " " + std::to_string(view.cells) + " " + core::format_number(duration()) + " " +
-                      view.show + " " + view.axes + (by_ratio() ? " by ratio" : "");
-    key += view.show == "sweep"         ? " " + view.sweep + " " + std::to_string(view.steps)
-           : view.show == "probability" ? " " + std::to_string(view.draws)
-           : view.show == "estimator"
+                      kind + " " + view.axes + (by_ratio() ? " by ratio" : "");
+    key += kind == "sweep"         ? " " + view.sweep + " " + std::to_string(view.steps)
+           : kind == "probability" ? " " + std::to_string(view.draws)
+           : kind == "estimator"
                ? " " + core::format_number(view.gap_noise) + " " + core::format_number(view.velocity_noise) + " " +
                      core::format_number(view.drag_error)
                : "";
@@ -348,8 +354,9 @@ std::string RegionPanel::map_key() const {
 
 std::string RegionPanel::motion_key() const {
     const auto& start = settings().start;
-    return start ? map_key() + " from " + core::format_number((*start)[0]) + " " + core::format_number((*start)[1])
-                 : std::string();
+    return start
+               ? map_key("ends") + " from " + core::format_number((*start)[0]) + " " + core::format_number((*start)[1])
+               : std::string();
 }
 
 void RegionPanel::fill_kinds() {
@@ -362,17 +369,88 @@ void RegionPanel::fill_kinds() {
         }
     }
     axes_->setPlaceholderText(qt(spec_.axes));
-    sweep_text_->setEnabled(view.show == "sweep");
+    const auto shown = kinds();
+    const bool swept = std::find(shown.begin(), shown.end(), "sweep") != shown.end();
+    const bool sensed = std::find(shown.begin(), shown.end(), "estimator") != shown.end();
+    sweep_text_->setEnabled(swept);
     gap_noise_->show_number(view.gap_noise);
     velocity_noise_->show_number(view.velocity_noise);
     drag_error_->show_number(view.drag_error);
-    sensors_->setVisible(view.show == "estimator");
+    sensors_->setVisible(sensed);
     if (QWidget* label = form_->labelForField(sensors_)) {
-        label->setVisible(view.show == "estimator");
+        label->setVisible(sensed);
     }
     if (QWidget* label = form_->labelForField(sweep_text_)) {
-        label->setEnabled(view.show == "sweep");
+        label->setEnabled(swept);
     }
+}
+
+std::vector<std::string> RegionPanel::kinds() const {
+    std::vector<std::string> all = {settings().show};
+    for (const auto& kind : settings().beside) {
+        if (std::find(all.begin(), all.end(), kind) == all.end()) {
+            all.push_back(kind);
+        }
+    }
+    return all;
+}
+
+PlotView& RegionPanel::map(const std::string& kind) {
+    PlotView*& plot = maps_[kind];
+    if (plot == nullptr) {
+        plot = new PlotView(map_cells_);
+        connect(plot, &PlotView::hovered, this, &Panel::remark);
+        if (kind == "ends") {
+            connect(plot, &PlotView::clicked, this, &RegionPanel::start_from);
+        }
+    }
+    return *plot;
+}
+
+void RegionPanel::place_maps() {
+    for (const auto& [kind, plot] : maps_) {
+        grid_->removeWidget(plot);
+        plot->hide();
+    }
+    int place = 0;
+    for (const auto& kind : kinds()) {
+        grid_->addWidget(&map(kind), place / 2, place % 2);
+        map(kind).show();
+        ++place;
+    }
+    map_cells_->setVisible(shows("map"));
+    motion_->setVisible(shows("motion"));
+}
+
+std::vector<Panel::View> RegionPanel::views() const {
+    std::vector<View> all;
+    const auto shown = kinds();
+    for (int i = 0; i < show_->count() && !spec_.name.empty(); ++i) {
+        const std::string kind = show_->itemData(i).toString().toStdString();
+        all.push_back({kind, show_->itemText(i), std::find(shown.begin(), shown.end(), kind) != shown.end()});
+    }
+    all.push_back({"motion", "motion", shows("motion")});
+    return all;
+}
+
+void RegionPanel::choose_view(const std::string& name, bool shown) {
+    if (name == "motion") {
+        desk_.act(shown ? Words{"cells", "stability"} : Words{"cells", "stability", "map"});
+        return;
+    }
+    auto all = kinds();
+    std::erase(all, name);
+    if (shown) {
+        all.push_back(name);
+    }
+    if (all.empty()) {
+        return;  // one stays
+    }
+    std::string others;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        others += (i > 1 ? "," : "") + all[i];
+    }
+    desk_.act({"region", spec_.name, "show=" + all.front(), "beside=" + others});
 }
 
 bool RegionPanel::has_motions() const {

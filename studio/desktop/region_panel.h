@@ -2,6 +2,7 @@
 // motion.
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "core/units.h"
@@ -10,6 +11,7 @@
 class QCheckBox;
 class QComboBox;
 class QFormLayout;
+class QGridLayout;
 class QLabel;
 class QLineEdit;
 class QPushButton;
@@ -51,6 +53,8 @@ public:
     [[nodiscard]] std::shared_ptr<const dynamics::RegionSweep> sweep() const { return sweep_; }
     /// What the sensors can know along the gap.
     [[nodiscard]] std::shared_ptr<const KnownAlongGap> known() const { return known_; }
+    [[nodiscard]] std::vector<View> views() const override;
+    void choose_view(const std::string& name, bool shown) override;
 
 protected:
     void draw_again(bool session) override;
@@ -63,17 +67,24 @@ private:
     void read_model();
     void fill_parameters();
     void show_parameter();
+    /// The maps that are shown, the first that of the controls.
+    [[nodiscard]] std::vector<std::string> kinds() const;
+    PlotView& map(const std::string& kind);
+    void place_maps();
+    void say_about(const std::string& kind, const QString& text);
     void compute();
+    void forget(const std::string& kind);
     void compute_map(const dynamics::RegionOptions& options);
     void compute_probability(const dynamics::RegionOptions& options);
     void compute_sweep(const dynamics::RegionOptions& options);
     void compute_estimator();
     void show_known();
     void compute_motion();
-    void say_when_nothing();
+    /// A map that failed or was cancelled is not waited for.
+    void say_when_nothing(const std::string& kind);
     void fill_kinds();
     /// With the scale of the gap that the state wants.
-    void show_map(core::Figure figure);
+    void show_map(const std::string& kind, core::Figure figure);
     /// Whether motions of the map that is shown can be drawn: a map of ends over gap and heave velocity.
     [[nodiscard]] bool has_motions() const;
     void show_region();
@@ -86,7 +97,7 @@ private:
     /// What the map, and what the motion was computed of: another one, another computation.
     [[nodiscard]] std::vector<core::NamedRange> axes() const;
     [[nodiscard]] bool by_ratio() const;
-    [[nodiscard]] std::string map_key() const;
+    [[nodiscard]] std::string map_key(const std::string& kind) const;
     [[nodiscard]] std::string motion_key() const;
 
     cases::RegionSpec spec_;
@@ -97,7 +108,9 @@ private:
     std::shared_ptr<const dynamics::RegionSweep> sweep_;
     std::shared_ptr<const KnownAlongGap> known_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
-    std::string map_of_, motion_of_;
+    std::map<std::string, std::string> map_of_;  ///< kind -> what its map is, or will be, made of
+    std::map<std::string, QString> about_of_;    ///< kind -> what is said of its map
+    std::string motion_of_;
     QComboBox* choice_ = nullptr;
     QSpinBox* cells_ = nullptr;
     NumberEdit* duration_ = nullptr;
@@ -115,7 +128,9 @@ private:
     QLabel* changes_label_ = nullptr;
     QPushButton* reset_ = nullptr;
     QLabel* about_ = nullptr;
-    PlotView* map_ = nullptr;
+    QWidget* map_cells_ = nullptr;
+    QGridLayout* grid_ = nullptr;
+    std::map<std::string, PlotView*> maps_;  ///< of each kind that was shown
     PlotView* motion_ = nullptr;
 };
 

@@ -73,8 +73,8 @@ void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, cons
     const auto to_y = core::conversion(region.axes[1].name == "gap" ? "m" : "m/s", figure.y.unit);
     core::FigureCurve path;
     path.name = "motion from the start";
-    path.colour = {20, 20, 20, 255};
-    path.width = 1.8;
+    path.colour = {20, 20, 20, 170};
+    path.width = 0.9;  // one that goes round a hundred times is no black spot
     std::transform(x->begin(), x->end(), std::back_inserter(path.x), to_x);
     std::transform(y->begin(), y->end(), std::back_inserter(path.y), to_y);
     core::FigurePoints start{
@@ -83,61 +83,96 @@ void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, cons
     figure.points.push_back(std::move(start));
 }
 
+/// One map of a kind at a time.
+QString slot_of(const std::string& kind) { return "region " + qt(kind); }
+
 }  // namespace
 
-void RegionPanel::compute() {
-    if (map_of_ == map_key()) {
-        if (known_) {  // the same map, perhaps on another scale
-            show_known();
-        }
-        return;
-    }
-    map_of_ = map_key();
-    region_.reset();
-    probability_.reset();
-    sweep_.reset();
-    known_.reset();
-    trajectory_.reset();
-    motion_of_.clear();
-    about_->clear();
-    dynamics::RegionOptions options = cases::region_options(spec_);
-    options.axes = axes();
-    options.gap_by_ratio = by_ratio();
-    options.columns = options.rows = static_cast<std::size_t>(settings().cells);
-    options.duration = duration();
-    motion_->show_text("Click a start in a map of where starts end to see its motion");
-    if (settings().show == "probability") {
-        compute_probability(options);
-    } else if (settings().show == "sweep") {
-        compute_sweep(options);
-    } else if (settings().show == "estimator") {
-        compute_estimator();
+void RegionPanel::forget(const std::string& kind) {
+    about_of_.erase(kind);
+    if (kind == "probability") {
+        probability_.reset();
+    } else if (kind == "sweep") {
+        sweep_.reset();
+    } else if (kind == "estimator") {
+        known_.reset();
     } else {
-        compute_map(options);
+        region_.reset();
+        trajectory_.reset();
+        motion_of_.clear();
+    }
+}
+
+void RegionPanel::say_about(const std::string& kind, const QString& text) {
+    about_of_[kind] = text;
+    about_->setText(about_of_[settings().show]);
+}
+
+void RegionPanel::compute() {
+    const auto shown = kinds();
+    for (const char* kind : {"ends", "probability", "sweep", "estimator"}) {
+        if (map_of_.contains(kind) && std::find(shown.begin(), shown.end(), kind) == shown.end()) {
+            map_of_.erase(kind);
+            jobs_.cancel(slot_of(kind));
+            forget(kind);
+        }
+    }
+    about_->setText(about_of_[settings().show]);
+    if (!region_) {
+        motion_->show_text("Click a start in a map of where starts end to see its motion");
+    }
+    for (const auto& kind : shown) {
+        if (map_of_[kind] == map_key(kind)) {
+            if (kind == "estimator" && known_) {  // the same map, perhaps on another scale
+                show_known();
+            }
+            continue;
+        }
+        map_of_[kind] = map_key(kind);
+        forget(kind);
+        about_->setText(about_of_[settings().show]);
+        dynamics::RegionOptions options = cases::region_options(spec_);
+        options.axes = axes();
+        options.gap_by_ratio = by_ratio();
+        options.columns = options.rows = static_cast<std::size_t>(settings().cells);
+        options.duration = duration();
+        if (kind == "probability") {
+            compute_probability(options);
+        } else if (kind == "sweep") {
+            compute_sweep(options);
+        } else if (kind == "estimator") {
+            compute_estimator();
+        } else {
+            motion_->show_text("Click a start in a map of where starts end to see its motion");
+            compute_map(options);
+        }
     }
 }
 
 void RegionPanel::compute_map(const dynamics::RegionOptions& options) {
     jobs_.start(
-        "region", "stability map",
-        [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+        slot_of("ends"), "stability map",
+        [this, model = changed_model(), options, key = map_of_["ends"]](core::Progress& progress) {
             auto region =
                 std::make_shared<const dynamics::StabilityRegion>(dynamics::stability_region(model, options, progress));
             return [this, region, key] {
-                if (key == map_of_) {
+                if (key == map_of_["ends"]) {
                     region_ = region;
                     show_region();
                     compute_motion();
                 }
             };
         },
-        false, [this] { say_when_nothing(); });
+        false, [this] { say_when_nothing("ends"); });
 }
 
-/// A map that failed or was cancelled is not waited for.
-void RegionPanel::say_when_nothing() {
-    if (!region_ && !probability_ && !sweep_ && !known_ && !jobs_.busy("region")) {
-        map_->show_text("There is no map: what is missing stands under Problems");
+void RegionPanel::say_when_nothing(const std::string& kind) {
+    const bool there = kind == "probability" ? probability_ != nullptr
+                       : kind == "sweep"     ? sweep_ != nullptr
+                       : kind == "estimator" ? known_ != nullptr
+                                             : region_ != nullptr;
+    if (!there && map_of_.contains(kind) && !jobs_.busy(slot_of(kind))) {
+        map(kind).show_text("There is no map: what is missing stands under Problems");
     }
 }
 
@@ -146,55 +181,55 @@ void RegionPanel::compute_probability(const dynamics::RegionOptions& wanted) {
     dynamics::RegionOptions options = wanted;
     options.columns = options.rows = std::min<std::size_t>(wanted.rows, 80);
     options.refine = false;
-    map_->show_text("…");
+    map("probability").show_text("…");
     jobs_.start(
-        "region", "chance of a safe end",
+        slot_of("probability"), "chance of a safe end",
         [this, model = changed_model(), options, draws = static_cast<std::size_t>(settings().draws),
-         key = map_of_](core::Progress& progress) {
+         key = map_of_["probability"]](core::Progress& progress) {
             auto found = std::make_shared<const dynamics::ProbabilityMap>(
                 dynamics::probability_map(model, options, draws, 1, progress));
             return [this, found, key] {
-                if (key == map_of_) {
+                if (key == map_of_["probability"]) {
                     probability_ = found;
-                    about_->setText(
-                        QString("%1 ± %2 % of the starts end well, over %3 draws of the tables.")
-                            .arg(map_number(100 * found->area_mean, 3), map_number(100 * found->area_sigma, 2))
-                            .arg(found->draws));
+                    say_about("probability",
+                              QString("%1 ± %2 % of the starts end well, over %3 draws of the tables.")
+                                  .arg(map_number(100 * found->area_mean, 3), map_number(100 * found->area_sigma, 2))
+                                  .arg(found->draws));
                     for (const auto& remark : found->remarks) {
                         Q_EMIT problem(remark);
                     }
-                    show_map(dynamics::probability_figure(*found));
+                    show_map("probability", dynamics::probability_figure(*found));
                 }
             };
         },
-        false, [this] { say_when_nothing(); });
+        false, [this] { say_when_nothing("probability"); });
 }
 
 void RegionPanel::compute_sweep(const dynamics::RegionOptions& wanted) {
     if (settings().sweep.empty()) {
-        jobs_.cancel("region");
-        map_->show_text("Name the condition that is swept, such as speed=0.3:0.7");
+        jobs_.cancel(slot_of("sweep"));
+        map("sweep").show_text("Name the condition that is swept, such as speed=0.3:0.7");
         return;
     }
     dynamics::RegionOptions options = wanted;
     options.columns = options.rows = std::min<std::size_t>(wanted.rows, 120);
     options.gap_by_ratio = false;  // shares of the area are drawn, not the maps
     const core::NamedRange range = core::parse_ranges(settings().sweep).front();
-    map_->show_text("…");
+    map("sweep").show_text("…");
     jobs_.start(
-        "region", "stability maps over " + qt(range.name),
+        slot_of("sweep"), "stability maps over " + qt(range.name),
         [this, model = changed_model(), options, range, steps = static_cast<std::size_t>(settings().steps),
-         key = map_of_](core::Progress& progress) {
+         key = map_of_["sweep"]](core::Progress& progress) {
             auto found = std::make_shared<const dynamics::RegionSweep>(
                 dynamics::swept_regions(model, options, range, steps, progress));
             return [this, found, key] {
-                if (key == map_of_) {
+                if (key == map_of_["sweep"]) {
                     sweep_ = found;
-                    map_->show_figure(dynamics::sweep_figure(*found), true);
+                    map("sweep").show_figure(dynamics::sweep_figure(*found), true);
                 }
             };
         },
-        false, [this] { say_when_nothing(); });
+        false, [this] { say_when_nothing("sweep"); });
 }
 
 /// What the declared sensors can know along the gap, and how many of the two forces the motion tells apart.
@@ -204,17 +239,17 @@ void RegionPanel::compute_estimator() {
     options.noise.velocity = settings().velocity_noise;
     options.noise.drag_relative = settings().drag_error;
     options.drag_prior = settings().drag_error;
-    map_->show_text("…");
+    map("estimator").show_text("…");
     jobs_.start(
-        "region", "what the sensors can know",
-        [this, model = changed_model(), options, key = map_of_](core::Progress& progress) {
+        slot_of("estimator"), "what the sensors can know",
+        [this, model = changed_model(), options, key = map_of_["estimator"]](core::Progress& progress) {
             const auto plant = estimator::separate(model, model.conditions);
             auto known = std::make_shared<KnownAlongGap>();
             known->information = estimator::information_along_gap(plant, options, progress);
             known->observability = estimator::observability_along_gap(plant, known->information.gaps);
             known->remarks = plant.remarks;
             return [this, known, key] {
-                if (key == map_of_) {
+                if (key == map_of_["estimator"]) {
                     known_ = known;
                     for (const auto& remark : known->remarks) {
                         Q_EMIT problem(remark);
@@ -223,14 +258,15 @@ void RegionPanel::compute_estimator() {
                 }
             };
         },
-        false, [this] { say_when_nothing(); });
+        false, [this] { say_when_nothing("estimator"); });
 }
 
 void RegionPanel::show_known() {
     const auto& map = known_->information;
     const auto& rank = known_->observability.separate_rank;
     const auto one = std::count(rank.begin(), rank.end(), 1U);
-    about_->setText(
+    say_about(
+        "estimator",
         QString("Blind, where the least error of the ground force is larger than itself: %1 % of gaps and speeds. "
                 "The motion shows one combination of ground force and drag at %2 of %3 gaps; the law of the "
                 "drag, known to %4 %, tells them apart.")
@@ -238,8 +274,11 @@ void RegionPanel::show_known() {
             .arg(one)
             .arg(rank.size())
             .arg(map_number(100 * settings().drag_error, 3)));
-    show_map(map.figure());
-    motion_->show_figure(map.along_gap(map.speeds[map.speeds.size() / 2]));
+    show_map("estimator", map.figure());
+    if (settings().show == "estimator") {
+        motion_->show_figure(
+            known_->information.along_gap(known_->information.speeds[known_->information.speeds.size() / 2]));
+    }
 }
 
 /// The motion is always that of the model and the start that stand in the state.
@@ -279,7 +318,7 @@ void RegionPanel::compute_motion() {
 }
 
 void RegionPanel::show_region() {
-    about_->setText(summary(*region_));
+    say_about("ends", summary(*region_));
     for (const auto& remark : region_->remarks) {
         Q_EMIT problem(remark);
     }
@@ -287,10 +326,10 @@ void RegionPanel::show_region() {
     if (trajectory_) {
         overlay(figure, *region_, *trajectory_);
     }
-    show_map(std::move(figure));
+    show_map("ends", std::move(figure));
 }
 
-void RegionPanel::show_map(core::Figure figure) {
+void RegionPanel::show_map(const std::string& kind, core::Figure figure) {
     bool can = false, is = false;
     for (core::FigureAxis* axis : {&figure.x, &figure.y}) {
         if (axis->label == "gap" && axis->lower > 0 && axis->upper > axis->lower) {
@@ -300,7 +339,7 @@ void RegionPanel::show_map(core::Figure figure) {
     }
     logarithmic_->setEnabled(can);
     logarithmic_->setChecked(is);
-    map_->show_figure(figure, true);
+    map(kind).show_figure(figure, true);
 }
 
 void RegionPanel::start_from(double x, double y) {
@@ -337,9 +376,12 @@ void RegionPanel::show_trajectory() {
                       .arg(time));
 }
 
-bool RegionPanel::has_picture() const { return map_->has_figure(); }
+bool RegionPanel::has_picture() const {
+    const auto first = maps_.find(settings().show);
+    return first != maps_.end() && first->second->has_figure();
+}
 
-void RegionPanel::export_picture(const std::filesystem::path& path) { map_->write(path); }
+void RegionPanel::export_picture(const std::filesystem::path& path) { maps_.at(settings().show)->write(path); }
 
 bool RegionPanel::has_table() const { return trajectory_ != nullptr || known_ != nullptr; }
 

@@ -149,8 +149,11 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
         }
     });
     p.before_drawing->SetClientData(&p);
-    p.before_drawing->SetCallback(
-        [](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->choose_drawn(); });
+    p.before_drawing->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+        auto& parts = *static_cast<Parts*>(data);
+        parts.size_marker();
+        parts.choose_drawn();
+    });
     p.renderer->AddObserver(vtkCommand::StartEvent, p.before_drawing);
     p.renderer->SetBackgroundTexture(p.whole_drawn);
     p.whole_drawn->SetColorModeToDirectScalars();
@@ -169,6 +172,18 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     style->AddObserver(vtkCommand::InteractionEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelForwardEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelBackwardEvent, p.on_turn);
+}
+
+/// Its letters are read in a small view, too.
+void Scene::Parts::size_marker() {
+    const int* size = window->GetSize();
+    const double least = 96 * widget->devicePixelRatioF();
+    const double wide = std::clamp(least / std::max(1, size[0]), 0.16, 0.5);
+    const double high = std::clamp(least / std::max(1, size[1]), 0.2, 0.5);
+    const double* now = marker->GetViewport();
+    if (now[2] != wide || now[3] != high) {
+        marker->SetViewport(0, 0, wide, high);
+    }
 }
 
 Scene::~Scene() {

@@ -79,6 +79,7 @@ struct Scene::Parts : QObject {
 
     /// Shows the picture of all faces where it is that of what is seen; else the stand-in, and asks for it at rest.
     void choose_drawn();
+    void size_marker();
     void ask_for_whole();
     /// Of the zones that are seen.
     void show_actors(bool shown);

@@ -37,5 +37,6 @@ State brush(State state, const Words& words, const Session& session);
 State vary(State state, const Words& words, const Session& session);
 State rows(State state, const Words& words, const Session& session);
 State show(State state, const Words& words, const Session& session);
+State choose_cells(State state, const Words& words, const Session& session);
 
 }  // namespace underbody::studio::action

@@ -26,6 +26,15 @@ State look_at_table(State state, const Words& words, const Session& session) {
         } else if (key == "shown") {
             need_table_view(axes, text);
             view.shown = text;
+        } else if (key == "beside") {
+            view.beside.clear();
+            for (const auto other : core::split(text, ',')) {
+                if (!other.empty()) {
+                    view.beside.emplace_back(other);
+                    need_table_view(axes, view.beside.back());
+                }
+            }
+            within(static_cast<double>(view.beside.size()), 0, 5, "views beside the first");
         } else if (key == "logarithmic") {
             view.logarithmic = text.empty() ? std::optional<bool>() : yes_or_no(text);
         } else if (key.starts_with("held.")) {
@@ -33,11 +42,20 @@ State look_at_table(State state, const Words& words, const Session& session) {
             const auto* quantity = core::find_quantity(key.substr(5));
             view.held[key.substr(5)] = core::parse_in(text, quantity != nullptr ? quantity->unit : "1");
         } else {
-            unknown_key(key, {"net_weight", "virtual_mass", "shown", "logarithmic", "held.AXIS"});
+            unknown_key(key, {"net_weight", "virtual_mass", "shown", "beside", "logarithmic", "held.AXIS"});
         }
     }
     return state;
 }
+
+namespace {
+void need_map(const std::string& kind) {
+    const std::vector<std::string> known = {"ends", "probability", "sweep", "estimator"};
+    if (std::find(known.begin(), known.end(), kind) == known.end()) {
+        unknown_key(kind, known);
+    }
+}
+}  // namespace
 
 State look_at_region(State state, const Words& words, const Session& session) {
     need(words, 2, 100, "region NAME KEY=VALUE ...");
@@ -48,11 +66,16 @@ State look_at_region(State state, const Words& words, const Session& session) {
         if (key == "cells") {
             view.cells = static_cast<int>(within(core::parse_in(text, "1"), 20, 1000, "starts a side"));
         } else if (key == "show") {
-            const std::vector<std::string> known = {"ends", "probability", "sweep", "estimator"};
-            if (std::find(known.begin(), known.end(), text) == known.end()) {
-                unknown_key(text, known);
-            }
+            need_map(text);
             view.show = text;
+        } else if (key == "beside") {
+            view.beside.clear();
+            for (const auto kind : core::split(text, ',')) {
+                if (!kind.empty()) {
+                    view.beside.emplace_back(kind);
+                    need_map(view.beside.back());
+                }
+            }
         } else if (key == "axes") {
             if (!text.empty() && core::parse_ranges(text).size() != 2) {
                 throw UsageError("range", "a map has two axes, not those of '" + text + "'", {},
@@ -104,8 +127,9 @@ State look_at_region(State state, const Words& words, const Session& session) {
                 need_parameter(session, words[0], key.substr(4), view.set[key.substr(4)]);
             }
         } else {
-            unknown_key(key, {"cells", "duration", "start", "show", "axes", "sweep", "steps", "draws", "gap_noise",
-                              "velocity_noise", "drag_error", "logarithmic", "as_declared", "set.PARAMETER"});
+            unknown_key(key,
+                        {"cells", "duration", "start", "show", "beside", "axes", "sweep", "steps", "draws", "gap_noise",
+                         "velocity_noise", "drag_error", "logarithmic", "as_declared", "set.PARAMETER"});
         }
     }
     return state;
@@ -211,6 +235,32 @@ State show(State state, const Words& words, const Session& session) {
     if (words.size() > 1) {
         need_one_of(words[1], case_views(session), "picture of cases");
         state.explore.picture = words[1];
+    }
+    return state;
+}
+
+State choose_cells(State state, const Words& words, const Session&) {
+    need(words, 1, 7, "cells WORKSPACE [VIEW ...]");
+    const auto& workspaces = workspace_names();
+    if (std::find(workspaces.begin(), workspaces.end(), words[0]) == workspaces.end()) {
+        throw UsageError("unknown", "there is no workspace '" + words[0] + "'", {},
+                         core::did_you_mean(words[0], workspaces));
+    }
+    const auto& views = workspace_views(words[0]);
+    std::vector<std::string> names, chosen;
+    for (const auto& view : views) {
+        names.push_back(view.name);
+        if (std::find(words.begin() + 1, words.end(), view.name) != words.end()) {
+            chosen.push_back(view.name);
+        }
+    }
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        need_one_of(words[i], names, "view of " + words[0]);
+    }
+    if (chosen.empty() || chosen.size() == views.size()) {
+        state.cells.erase(words[0]);
+    } else {
+        state.cells[words[0]] = chosen;
     }
     return state;
 }

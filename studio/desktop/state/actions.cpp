@@ -350,6 +350,8 @@ const std::vector<ActionKind>& action_kinds() {
         {"show", "points|pictures [VIEW]|lift|map",
          "brings a view to the front: of Explore the points or the pictures, of Design the lift or the stability map",
          "show pictures", true, action::show},
+        {"cells", "WORKSPACE [VIEW ...]", "shows these views of a workspace; no view: all of them",
+         "cells design body section", true, action::choose_cells},
     };
     return kinds;
 }

@@ -2,7 +2,6 @@
 // again.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "core/progress.h"

@@ -20,19 +20,6 @@ cases::NewMeasurement new_measurement(const std::string& name, const MeasuredRec
     return measurement;
 }
 
-MeasuredRecord record_of(const cases::NewMeasurement& measurement) {
-    MeasuredRecord record;
-    record.model = action::whole_path(measurement.model);
-    for (const auto& path : measurement.data) {
-        record.data.push_back(action::whole_path(path));
-    }
-    for (const auto& channel : measurement.channels) {
-        record.channels.push_back(cases::text_of(channel));
-    }
-    record.clock = measurement.clock + (measurement.clock_unit.empty() ? "" : ":" + measurement.clock_unit);
-    return record;
-}
-
 Words words_of_measurement(const std::string& name, const MeasuredRecord& record) {
     Words words = {"measure", name, "model=" + record.model};
     for (const auto& path : record.data) {

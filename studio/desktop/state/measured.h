@@ -13,7 +13,6 @@ namespace underbody::studio {
 
 /// Throws as cases::measured_channel.
 cases::NewMeasurement new_measurement(const std::string& name, const MeasuredRecord& record);
-MeasuredRecord record_of(const cases::NewMeasurement& measurement);
 
 /// `measure NAME KEY=VALUE ...`, as the action takes it.
 Words words_of_measurement(const std::string& name, const MeasuredRecord& record);

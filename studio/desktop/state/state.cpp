@@ -42,6 +42,22 @@ const std::vector<std::string>& workspace_names() {
     return names;
 }
 
+const std::vector<WorkspaceView>& workspace_views(const std::string& workspace) {
+    static const std::map<std::string, std::vector<WorkspaceView>> views = {
+        {"design", {{"body", "Body"}, {"section", "Section"}, {"lift", "Lift"}, {"map", "Stability map"}}},
+        {"explore", {{"lines", "Lines"}, {"table", "Table"}, {"points", "Points"}, {"pictures", "Pictures"}}},
+        {"compare", {{"fields", "Fields"}, {"numbers", "Numbers"}}},
+        {"tables", {{"curves", "Curves"}, {"equilibria", "Equilibria"}}},
+        {"stability", {{"map", "Map"}, {"motion", "Motion"}}},
+        {"loop", {{"verdict", "Verdict"}, {"pictures", "Pictures"}}}};
+    return views.at(workspace);
+}
+
+bool State::shows(const std::string& of, const std::string& view) const {
+    const auto at = cells.find(of);
+    return at == cells.end() || std::find(at->second.begin(), at->second.end(), view) != at->second.end();
+}
+
 geometry::BodyShape shape_with(const State& state, const Session& session, const std::string& name,
                                const ShapeChanges& changes) {
     geometry::BodyShape shape;
@@ -152,12 +168,14 @@ void fields(auto& v, const TableView& /*kind*/, const auto& field) {
     field("shown", v.shown);
     field("held", v.held);
     field("logarithmic", v.logarithmic);
+    field("beside", v.beside);
 }
 
 void fields(auto& v, const RegionView& /*kind*/, const auto& field) {
     field("set", v.set);
     field("cells", v.cells);
     field("show", v.show);
+    field("beside", v.beside);
     field("axes", v.axes);
     field("sweep", v.sweep);
     field("steps", v.steps);
@@ -204,6 +222,7 @@ void fields(auto& v, const State& /*kind*/, const auto& field) {
     field("selection", v.selection);
     field("last", v.last);
     field("stars", v.stars);
+    field("cells", v.cells);
     field("accepted", v.accepted);
 }
 

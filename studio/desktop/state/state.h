@@ -34,6 +34,7 @@ struct TableView {
     std::string shown;                   ///< "curve gap", "family gap pitch", "map gap pitch"; empty: the first
     std::map<std::string, double> held;  ///< axes that are not drawn
     std::optional<bool> logarithmic;     ///< none: where the axis spans decades
+    std::vector<std::string> beside;     ///< other views, as `shown`, in cells of their own
     bool operator==(const TableView&) const = default;
 };
 
@@ -42,6 +43,7 @@ struct RegionView {
     std::map<std::string, double> set;           ///< declared parameters, SI
     int cells = 200;                             ///< starts a side
     std::string show = "ends";                   ///< "ends", "probability", "sweep", "estimator"
+    std::vector<std::string> beside;             ///< other kinds of map, in cells of their own
     std::string axes;                            ///< "gap=1mm:20mm,pitch=-3deg:3deg"; empty: as the study says
     std::string sweep;                           ///< "jet_voltage=0:10": what the maps of a sweep differ in
     int steps = 5;                               ///< maps of the sweep
@@ -132,6 +134,8 @@ struct State {
     /// What was last selected of each kind, which a workspace shows while something of another kind is selected.
     std::map<std::string, std::vector<std::string>> last;
     std::set<std::string> stars;
+    /// Workspace -> those of its views that are shown; missing: all of them.
+    std::map<std::string, std::vector<std::string>> cells;
     DesignView design;
     FieldView fields;
     std::map<std::string, FileReading> readings;  ///< by path, absolute
@@ -148,11 +152,21 @@ struct State {
     /// The first of those last selected of a kind ("table", "region", ...) when it is among `known`, else the first of
     /// `known`; empty when there is none.
     [[nodiscard]] std::string current(const std::string& kind, const std::vector<std::string>& known) const;
+    /// Whether a view `of` a workspace is shown.
+    [[nodiscard]] bool shows(const std::string& of, const std::string& view) const;
 };
 using StatePointer = std::shared_ptr<const State>;
 
 /// The six workspaces, in the order of their keys.
 const std::vector<std::string>& workspace_names();
+
+/// A view of a workspace, which has a cell there.
+struct WorkspaceView {
+    std::string name;   ///< as in `cells design body section`
+    std::string title;  ///< for people
+};
+/// The views of a workspace, in the order of their cells.
+const std::vector<WorkspaceView>& workspace_views(const std::string& workspace);
 
 /// Equal for equal states.
 std::string state_hash(const State& state);
