@@ -1,5 +1,7 @@
 #include "studio/desktop/jobs.h"
 
+#include <malloc.h>
+
 #include <QCoreApplication>
 #include <QtConcurrent>
 #include <algorithm>
@@ -13,6 +15,10 @@ namespace underbody::studio {
 Jobs::Jobs(QObject* parent) : QObject(parent) {
     qRegisterMetaType<std::exception_ptr>();
     pool_.setMaxThreadCount(3);
+    rest_.setSingleShot(true);
+    rest_.setInterval(1000);
+    // What the work took in small pieces the C library keeps for more of them, although it is free.
+    connect(&rest_, &QTimer::timeout, this, [] { ::malloc_trim(0); });
 }
 
 Jobs::~Jobs() {
@@ -60,6 +66,7 @@ void Jobs::start(const QString& slot, const QString& what, Work work, bool quiet
     job->since.start();
     listen(job);
     running_.push_back(job);
+    rest_.stop();
     QtConcurrent::run(&pool_, [this, job, work = std::move(work)] {
         std::function<void()> show;
         std::exception_ptr error;
@@ -99,6 +106,7 @@ void Jobs::finish(const std::shared_ptr<Job>& job, const std::function<void()>& 
     }
     tell();
     if (running_.empty()) {
+        rest_.start();
         Q_EMIT idle();
     }
 }

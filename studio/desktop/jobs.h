@@ -5,6 +5,7 @@
 #include <QObject>
 #include <QString>
 #include <QThreadPool>
+#include <QTimer>
 #include <exception>
 #include <functional>
 #include <list>
@@ -81,6 +82,7 @@ private:
 
     QThreadPool pool_;
     std::list<std::shared_ptr<Job>> running_;
+    QTimer rest_;  ///< runs out when nothing has run for a while
     int last_id_ = 0;
     bool closing_ = false;
 };

@@ -1,5 +1,6 @@
 // underbody-studio: the desktop.
 #include <QVTKOpenGLNativeWidget.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <QFile>
@@ -127,13 +128,13 @@ int run(int argc, char** argv) {
     if (!options.log.empty() && options.screenshots.empty()) {
         return replay_without_window(options);
     }
+    ::mallopt(M_ARENA_MAX, 2);  // of its own for every thread each would keep what it once held
     const auto display = need_display(options);
     if (!options.screenshots.empty()) {
         ::setenv("QT_QPA_PLATFORM", "xcb", 1);  // 3D needs an X server, also where tests ask for `offscreen`
     }
     QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
-    QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     Application application(argc, argv);
     // Qt takes the user's locale over; numbers in files must not change with it.

@@ -19,7 +19,6 @@ inline void use_own_display() {
     ::setenv("DISPLAY", display.name().c_str(), 1);
     ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
-    QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
 }
 
