@@ -19,6 +19,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/state/words.h"
 
@@ -32,7 +33,7 @@ ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables:
     setObjectName("export");
     setAttribute(Qt::WA_DeleteOnClose);
     setWindowTitle("Export " + qt(all_.front()->quantity()).replace('_', ' ') + " for a controller");
-    resize(1000, 640);
+    resize(1060, 660);
     soon_ = new QTimer(this);
     soon_->setSingleShot(true);
     soon_->setInterval(80);
@@ -82,6 +83,9 @@ void ExportDialog::build() {
     proof_ = new QLabel;
     proof_->setWordWrap(true);
     form->addRow(proof_);
+    error_ = new PlotView(this);
+    error_->set_least(QSize(200, 150));
+    form->addRow(error_);
     halves->addWidget(left);
     text_ = new QPlainTextEdit;
     text_->setReadOnly(true);
@@ -89,7 +93,7 @@ void ExportDialog::build() {
     text_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
     text_->setAccessibleName("What would be written");
     halves->addWidget(text_);
-    halves->setSizes({380, 620});
+    halves->setSizes({440, 620});
     command_ = new QLabel;
     command_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     command_->setWordWrap(true);
@@ -154,6 +158,10 @@ tables::ForceTable ExportDialog::table() const {
 void ExportDialog::refresh() {
     proof_->clear();
     prove_->setEnabled(format() == "c");
+    format_->setToolTip(format_->currentText());  // longer than its place
+    for (const auto& [axis, policy] : policies_) {
+        policy->setToolTip(policy->currentText());
+    }
     command_->setText(command("FILE"));
     tables::ExportOptions wanted;
     try {
@@ -173,6 +181,10 @@ void ExportDialog::refresh() {
             const fs::path file = folder.path() / (wanted.name + ending);
             const auto result = tables::export_table(chosen, kind, file, wanted, progress);
             const std::string bytes = core::read_file(file);
+            core::Figure error;
+            if (result.error > 0) {
+                error = tables::export_difference_figure(chosen, kind, wanted, progress);
+            }
             QString facts = "grid ";
             for (std::size_t i = 0; i < result.grid.size(); ++i) {
                 facts += (i > 0 ? " x " : "") + QString::number(result.grid[i]);
@@ -186,8 +198,12 @@ void ExportDialog::refresh() {
             }
             const bool text = bytes.find('\0') == std::string::npos;
             const QString shown = text ? qt(bytes.substr(0, 200000)) : QString("(a binary file)");
-            return [this, facts, shown] {
+            return [this, facts, shown, error] {
                 facts_->setText(facts);
+                error_->setVisible(!error.curves.empty());
+                if (!error.curves.empty()) {
+                    error_->show_figure(error);
+                }
                 text_->setPlainText(shown);
             };
         },

@@ -20,6 +20,8 @@ class QTimer;
 
 namespace underbody::studio {
 
+class PlotView;
+
 class ExportDialog : public QDialog {
     Q_OBJECT
 public:
@@ -34,6 +36,7 @@ public:
     void prove();
     [[nodiscard]] QString proof() const;
     [[nodiscard]] QString preview() const;
+    [[nodiscard]] const PlotView* error() const { return error_; }
 
 Q_SIGNALS:
     void written(const QString& command);
@@ -63,6 +66,7 @@ private:
     QPlainTextEdit* text_ = nullptr;
     QLabel* facts_ = nullptr;
     QLabel* proof_ = nullptr;
+    PlotView* error_ = nullptr;  ///< along the table's first axis; hidden where the file equals the table
     QPushButton* prove_ = nullptr;
     QLabel* command_ = nullptr;
     QTimer* soon_ = nullptr;

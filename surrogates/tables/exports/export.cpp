@@ -1,10 +1,14 @@
 #include "surrogates/tables/exports/export.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/units.h"
+#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/exports/export_grid.h"
+#include "surrogates/tables/fit/table_json.h"
 #include "surrogates/tables/points/table_files.h"
 
 namespace underbody::tables {
@@ -80,6 +84,40 @@ void check_path(const std::filesystem::path& path, const ForceTable& table, bool
     }
 }
 
+const Exporter& exporter_of(const std::string& format) {
+    const auto found = std::find_if(exporters().begin(), exporters().end(),
+                                    [&](const Exporter& e) { return e.format.name == format; });
+    if (found == exporters().end()) {
+        std::vector<std::string> names;
+        for (const auto& f : export_formats()) {
+            names.push_back(f.name);
+        }
+        throw core::UsageError("format", "there is no export format '" + format + "'", {},
+                               core::did_you_mean(format, names));
+    }
+    return *found;
+}
+
+/// Straight lines between the values of a grid, one axis after the other.
+double straight_value(const CubicGrid& grid, const std::vector<double>& point) {
+    const std::size_t axes = grid.dimensions();
+    double sum = 0;
+    for (std::size_t corner = 0; corner < std::size_t{1} << axes; ++corner) {
+        double weight = 1;
+        std::size_t node = 0;
+        for (std::size_t k = 0; k < axes; ++k) {
+            const auto spot = grid.spot(k, point[k]);
+            const auto& x = grid.axis(k).points();
+            const double share = spot.offset / (x[spot.cell + 1] - x[spot.cell]);
+            const bool upper = (corner >> k & 1U) != 0;
+            weight *= upper ? share : 1 - share;
+            node = node * x.size() + spot.cell + (upper ? 1 : 0);
+        }
+        sum += weight * grid.hermite()[node << axes];
+    }
+    return sum;
+}
+
 }  // namespace
 
 const std::vector<ExportFormat>& export_formats() {
@@ -98,18 +136,52 @@ ExportResult export_table(const ForceTable& table, const std::string& format, co
     return export_tables({table}, format, path, options, progress);
 }
 
+core::Figure export_difference_figure(const ForceTable& table, const std::string& format, const ExportOptions& options,
+                                      core::Progress& progress) {
+    ExportOptions up = options;  // the size of a difference is that in every frame
+    up.frame = Frame::up;
+    up.name = "difference";
+    const bool straight = exporter_of(format).straight || options.fixed_point;
+    const ExportGrid grid = export_grid({table}, up, straight, progress);
+    const CubicGrid& written = grid.first().surface;
+    const auto place = [&](std::size_t k, double share) {
+        const double low = grid.axes[k].lower, high = grid.axes[k].upper;
+        return spans_decades(low, high) ? low * std::pow(high / low, share) : low + share * (high - low);
+    };
+    constexpr int along = 240, across = 9;
+    std::size_t others = 1;
+    for (std::size_t k = 1; k < grid.axes.size(); ++k) {
+        others *= across;
+    }
+    core::Figure figure;
+    const ExportAxis& first = grid.axes.front();
+    figure.x = {first.name, shown_unit(table, first.name), 0, 0, spans_decades(first.lower, first.upper)};
+    figure.y = {"file less table", shown_unit(table, table.quantity()), 0, 0, false};
+    core::FigureCurve curve;
+    curve.colour = core::palette(1);
+    std::vector<double> point(grid.axes.size());
+    for (int i = 0; i <= along; ++i) {
+        progress.check();
+        point[0] = place(0, static_cast<double>(i) / along);
+        double largest = 0;
+        for (std::size_t other = 0; other < others; ++other) {
+            for (std::size_t k = 1, rest = other; k < grid.axes.size(); ++k, rest /= across) {
+                point[k] = place(k, static_cast<double>(rest % across) / (across - 1));
+            }
+            const double value = straight ? straight_value(written, point) : written.value(point.data(), nullptr);
+            const double difference = value - table.value(point.data());
+            largest = std::abs(difference) > std::abs(largest) ? difference : largest;
+        }
+        curve.x.push_back(core::convert(point[0], first.unit, figure.x.unit));
+        curve.y.push_back(core::convert(largest, table.unit(), figure.y.unit));
+    }
+    figure.curves.push_back(std::move(curve));
+    return figure;
+}
+
 ExportResult export_tables(const std::vector<ForceTable>& tables, const std::string& format,
                            const std::filesystem::path& path, const ExportOptions& options, core::Progress& progress) {
-    const auto found = std::find_if(exporters().begin(), exporters().end(),
-                                    [&](const Exporter& e) { return e.format.name == format; });
-    if (found == exporters().end()) {
-        std::vector<std::string> names;
-        for (const auto& f : export_formats()) {
-            names.push_back(f.name);
-        }
-        throw core::UsageError("format", "there is no export format '" + format + "'", {},
-                               core::did_you_mean(format, names));
-    }
+    const Exporter* found = &exporter_of(format);
     const std::size_t axes = tables.front().axes().size();
     if (axes > found->most_axes) {
         throw core::UsageError("format",

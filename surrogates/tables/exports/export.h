@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/figure.h"
 #include "core/progress.h"
 #include "surrogates/tables/fit/force_table.h"
 
@@ -65,6 +66,11 @@ std::string identifier(const std::string& text);
 /// core::SystemError when it cannot be written. Whole files by rename.
 ExportResult export_table(const ForceTable& table, const std::string& format, const std::filesystem::path& path,
                           const ExportOptions& options = {}, core::Progress& progress = core::Progress::none());
+/// What the file gives less what the table gives, along the first axis; of several axes the largest difference over the
+/// others. Throws as export_table does.
+core::Figure export_difference_figure(const ForceTable& table, const std::string& format,
+                                      const ExportOptions& options = {},
+                                      core::Progress& progress = core::Progress::none());
 /// Several forces and moments in one file, on one grid, looked up by one call. At least one; the same axes.
 ExportResult export_tables(const std::vector<ForceTable>& tables, const std::string& format,
                            const std::filesystem::path& path, const ExportOptions& options = {},

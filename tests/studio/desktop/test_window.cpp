@@ -31,6 +31,7 @@
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/parameter_row.h"
+#include "studio/desktop/plot_view.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/screenshots.h"
@@ -61,6 +62,7 @@ TEST_F(Window, EveryActionIsDoneUndoneAndRedone) {
                                             "rows cases",
                                             "show pictures",
                                             "show map",
+                                            "cells design body lift",
                                             "workspace compare",
                                             "fields camera=bottom range=-100:100",
                                             "workspace tables",
@@ -390,6 +392,15 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
         "underbody export " + QString::fromStdString(computed_study().string()) + "/report/exports/lift.csv "))
         << dialog->command("lift.h").toStdString();
     EXPECT_TRUE(dialog->preview().contains("#ifndef")) << dialog->preview().left(300).toStdString();
+    EXPECT_FALSE(dialog->error()->isVisibleTo(dialog)) << "equal to the table";
+    for (auto* edit : dialog->findChildren<QLineEdit*>()) {
+        if (edit->placeholderText().startsWith("none")) {
+            QTest::keyClicks(edit, "1");
+        }
+    }
+    settle(*window_);
+    ASSERT_TRUE(dialog->error()->isVisibleTo(dialog));
+    EXPECT_EQ(dialog->error()->figure().x.label, "gap");
     dialog->prove();
     settle(*window_);
     EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();

@@ -46,6 +46,46 @@ TEST(Exports, ThinTheGridAndKeepTheErrorAskedFor) {
     EXPECT_THAT(core::read_file(folder.path() / "thin.csv"), HasSubstr("Differs from the full table by at most"));
 }
 
+// The curve of the difference is that of the file that is read back, and touches the error that is stated.
+TEST(Exports, DrawTheDifferenceAlongTheFirstAxis) {
+    std::vector<double> gap;
+    for (int i = 0; i < 60; ++i) {
+        gap.push_back(0.001 * std::pow(100.0, i / 59.0));
+    }
+    std::vector<double> lift;
+    std::transform(gap.begin(), gap.end(), std::back_inserter(lift),
+                   [](double h) { return 3e-4 / h + 0.3 * std::sin(9 * h); });
+    core::Table points;
+    points.add_numbers("gap", "m", gap);
+    points.add_numbers("lift_force", "N", lift);
+    const auto table = ForceTable::fit(points, "lift_force", test::interpolation());
+    core::TemporaryFolder folder;
+    ExportOptions options;
+    options.max_error = 0.01;
+    const auto result = export_table(table, "csv", folder.path() / "thin.csv", options);
+    const auto thin = ForceTable::read(folder.path() / "thin.csv", "lift_force");
+    const auto figure = export_difference_figure(table, "csv", options);
+    ASSERT_EQ(figure.curves.size(), 1U);
+    EXPECT_EQ(figure.x.unit, "mm");
+    const auto& curve = figure.curves.front();
+    double largest = 0;
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        const double h = std::clamp(1e-3 * curve.x[i], 0.001, 0.1);
+        EXPECT_NEAR(curve.y[i], thin.value(&h) - table.value(&h), 1e-9) << h;
+        largest = std::max(largest, std::abs(curve.y[i]));
+    }
+    EXPECT_LE(largest, result.error);
+    EXPECT_GT(largest, 0.7 * result.error);
+    // Where the consumer draws straight lines, theirs.
+    const auto straight = export_difference_figure(table, "jsbsim", options).curves.front();
+    double of_lines = 0;
+    for (const double y : straight.y) {
+        of_lines = std::max(of_lines, std::abs(y));
+    }
+    EXPECT_GT(of_lines, 0);
+    EXPECT_LE(of_lines, export_table(table, "jsbsim", folder.path() / "thin.xml", options).error);
+}
+
 TEST(Exports, SayWithTheirErrorWhatThinningCostBetweenTheLinesOfEveryAxis) {
     core::TemporaryFolder folder;
     const auto table = test::two_axes();
