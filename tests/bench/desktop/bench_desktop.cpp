@@ -1,8 +1,11 @@
-// bench_desktop [STUDY] [--faces N] [--cases FOLDER]: the figures of the window on a display of its own (Xvfb, software
-// renderer) by the clock, for a quiet machine. STUDY: computed, as `underbody study run` leaves it (default
-// cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of very many
-// cases, as tests/bench/cases/bench_scaling.py makes them.
+// bench_desktop [STUDY] [--faces N] [--cases FOLDER] [--paraview COMMAND]: the figures of the window on a display of
+// its own (Xvfb, software renderer) by the clock, for a quiet machine. STUDY: computed, as `underbody study run` leaves
+// it (default cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of
+// very many cases, as tests/bench/cases/bench_scaling.py makes them. COMMAND: pvpython, which opens and turns the same
+// surface on the same display (Debian's python3-paraview and libvtk9-dev exclude each other: unpack it beside with dpkg
+// -x).
 #include <QVTKOpenGLNativeWidget.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <QApplication>
@@ -112,6 +115,7 @@ public:
         say("  since the process was started", age(), "1000");
         settle(window_);
         say("  longest gap of the loop", beat_.take(), "100");
+        QTest::qWait(1500);  // what is free is given back after a second of rest
         say_memory("the study", 200);
     }
 
@@ -178,7 +182,7 @@ public:
         say("cancel to nothing running", until([&] { return !window_.jobs().busy(); }), "200");
     }
 
-    void faces(int count, const fs::path& folder) {
+    void faces(int count, const fs::path& folder, const std::string& paraview) {
         test::write_stl(folder / "many.stl", count);
         beat_.take();
         window_.take_files({folder / "many.stl"});
@@ -208,6 +212,17 @@ public:
         say_memory("with them", 700);
         window_.desk().undo();
         settle(window_);
+        if (!paraview.empty()) {
+            window_.hide();
+            const std::string command = paraview +
+                                        " " UNDERBODY_SOURCE_FOLDER "/tests/bench/desktop/paraview_turn.py " +
+                                        (folder / "many.stl").string();
+            std::printf("ParaView, the same surface and display:\n");
+            std::fflush(stdout);
+            if (std::system(command.c_str()) != 0) {
+                throw std::runtime_error("'" + paraview + "' did not draw the surface");
+            }
+        }
     }
 
     void many_cases(const fs::path& folder) {
@@ -252,6 +267,7 @@ private:
 
 int run(int argc, char** argv) {
     fs::path study = fs::path(UNDERBODY_SOURCE_FOLDER) / "cases" / "evie", cases;
+    std::string paraview;
     int faces = 5000000;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -259,6 +275,8 @@ int run(int argc, char** argv) {
             faces = std::stoi(argv[++i]);
         } else if (word == "--cases" && i + 1 < argc) {
             cases = argv[++i];
+        } else if (word == "--paraview" && i + 1 < argc) {
+            paraview = argv[++i];
         } else {
             study = word;
         }
@@ -267,8 +285,9 @@ int run(int argc, char** argv) {
     const core::VirtualDisplay display(1600, 1000);
     ::setenv("DISPLAY", display.name().c_str(), 1);
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
+    ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+    ::mallopt(M_ARENA_MAX, 2);  // as underbody-studio
     const double display_took = age() - before_display;
-    QApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication application(argc, argv);
     std::setlocale(LC_NUMERIC, "C");
@@ -290,7 +309,7 @@ int run(int argc, char** argv) {
     bench.cancel();
     const core::TemporaryFolder scratch;
     if (faces > 0) {
-        bench.faces(faces, scratch.path());
+        bench.faces(faces, scratch.path(), paraview);
     }
     if (!cases.empty()) {
         bench.many_cases(cases);
