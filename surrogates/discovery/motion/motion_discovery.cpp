@@ -45,7 +45,7 @@ Discovery MotionLoop::run() {
     progress_.report(0.15, "fitting the effects of the catalogue");
     list_candidates();
     fit_singles();
-    colour_noise();
+    noise_beside_best();
     progress_.report(0.6, "testing what is left");
     open_gate();
     if (gate_ < calibration_.gate) {
@@ -248,11 +248,20 @@ void MotionLoop::fit_singles() {
     }
 }
 
+/// True where a channel has been left with less than half of the noise by which its readings scatter: random loads that
+/// make up for what is missing follow a measured rate from reading to reading, as if it had none.
+bool MotionLoop::noise_given_to_loads() const {
+    constexpr double half = 0.5;
+    const MotionNoise first = noise_at_first();
+    return std::any_of(channels_.begin(), channels_.end(),
+                       [&](std::size_t i) { return null_noise_.total(i) < half * first.white[i]; });
+}
+
 /// Coloured sensor noise would pass for an effect, and an effect for coloured noise: it was looked for beside the
 /// declared model, now beside the best explanation; if the answer is another one, everything is judged again.
-void MotionLoop::colour_noise() {
+void MotionLoop::noise_beside_best() {
     constexpr double other = 1.3;  // times as much noise of a reading, or as little
-    if (fitted_.empty() || !null_noise_.coloured()) {
+    if (fitted_.empty() || !(null_noise_.coloured() || noise_given_to_loads())) {
         return;
     }
     const FittedHypothesis& best = fitted_[best_single_];

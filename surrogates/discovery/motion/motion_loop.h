@@ -34,7 +34,8 @@ private:
                                                   const std::vector<std::vector<double>>& starts,
                                                   const MotionNoise& begin) const;
     void fit_singles();
-    void colour_noise();
+    [[nodiscard]] bool noise_given_to_loads() const;
+    void noise_beside_best();
     [[nodiscard]] MotionNoise noise_at_first() const;
     void warn(const std::string& text);
 
@@ -85,6 +86,10 @@ private:
         [[nodiscard]] double chance(std::size_t channel, double error, std::uint64_t seed) const;
     };
     [[nodiscard]] Twins twins_of(const Answer& answer, std::size_t draws) const;
+    /// By channel: errors of a window predicted again from readings that noise was drawn for; false where no state
+    /// fits.
+    [[nodiscard]] bool twin_errors(dynamics::MeasuredMotion& run, const dynamics::MotionWindow& window,
+                                   core::Random& random, std::vector<std::vector<double>>& errors) const;
     /// Compares with the twins, and keeps what is unexplained.
     bool rest_is_noise(const Answer& answer);
     [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;

@@ -151,6 +151,24 @@ TEST_F(BodyRuns, ResidualsAreInTheirAxes) {
     }
 }
 
+// A random moment that makes up for what is missing follows a measured rate from reading to reading, as if the rate had
+// no noise: the noise is looked for again beside the effect.
+TEST_F(BodyRuns, TheNoiseOfARateIsItsSensorsThoughAnEffectIsMissing) {
+    BodyRig rig;
+    rig.rates_only = true;
+    rig.frequency = 10;
+    rig.seconds = 12;
+    rig.jet_angle = 0.06;
+    DiscoverOptions options;
+    options.consequence = options.figures = false;
+    options.candidates = {"jet_misalignment", "yaw_damping"};
+    const Discovery found = discover(model_, test::body_rig_runs(rig, 4, 64), options);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.front().name, "jet_misalignment");
+    EXPECT_NEAR(found.noise.at("yaw_rate").value, 0.005, 0.001);
+    EXPECT_TRUE(found.rest.is_noise) << found.sentence;
+}
+
 /// The runs with one column changed.
 dynamics::Measurements changed(dynamics::Measurements data, const std::string& name,
                                const std::function<void(std::vector<double>&)>& change) {
