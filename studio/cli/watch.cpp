@@ -90,6 +90,14 @@ public:
         : shell_(shell), arguments_(arguments), model_(dynamics::read_model(arguments.model)) {
         if (!arguments.data.empty()) {
             setup_ = dynamics::read_measurement_setup(arguments.data);
+            if (setup_.motion == "surface" || setup_.motion == "body") {
+                throw core::InputError(
+                    "motion",
+                    "a watch is of heave under input_force: these runs are of motion = \"" + setup_.motion +
+                        "\", driven by jets, whose thrusts it does not know",
+                    {arguments.data, {}, {}, {}},
+                    "discover and predict follow them; leave motion out where no jet acts up or down");
+            }
         }
         options_.false_alarms_per_day = arguments.per_day;
         options_.learn = option_value("--learn", arguments.learn, "s");

@@ -149,6 +149,20 @@ TEST(WatchCommand, NeedsAGap) {
     EXPECT_THAT(run.errors, HasSubstr("nothing says which number is the gap"));
 }
 
+// A vehicle that its jets hold up: without their thrusts each of them would be an alarm.
+TEST(WatchCommand, RefusesRunsThatJetsDrive) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    core::write_file(folder.path() / "run.csv",
+                     "time [s], gap [m], pitch [rad], thrust_up [N]\n0, 1, 0, 1\n1, 1, 0, 1\n");
+    core::write_file(folder.path() / "dataset.toml",
+                     "kind = \"time_series\"\nmotion = \"body\"\n[[run]]\nfile = \"run.csv\"\n");
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv", "--data", "dataset.toml"}, folder.path());
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_THAT(run.errors, HasSubstr("motion = \"body\", driven by jets"));
+    EXPECT_THAT(run.errors, HasSubstr("discover and predict follow them"));
+}
+
 TEST(InfoOfLogs, ListsMessagesOfTheSamples) {
     UNDERBODY_NEEDS_SHARED("samples/logs/ardusub_small.BIN");
     const std::string file = (shared_folder() / "samples/logs/ardusub_small.BIN").string();

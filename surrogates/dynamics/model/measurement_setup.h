@@ -10,6 +10,7 @@
 namespace underbody::dynamics {
 
 struct MeasurementSetup {
+    std::string motion;                        ///< as dataset.toml says it; empty: it does not
     std::map<std::string, double> noise;       ///< declared standard deviation of a channel, SI
     std::map<std::string, double> conditions;  ///< SI
     LogChannels channels;

@@ -321,11 +321,16 @@ std::filesystem::path dataset_file(const std::filesystem::path& folder) {
     return folder / "dataset.toml";
 }
 
+std::string read_motion(const core::TomlTable& root) {
+    return root.choice("motion", {"heave", "heave_pitch", "surface", "body"}, "");
+}
+
 }  // namespace
 
 MeasurementSetup read_measurement_setup(const std::filesystem::path& path) {
     const core::TomlTable root = core::read_toml(dataset_file(path), dataset_format());
     MeasurementSetup setup;
+    setup.motion = read_motion(root);
     setup.noise = read_noise(root.table_or_empty("noise"));
     setup.conditions = read_quantities(root.table_or_empty("conditions"), "condition");
     setup.channels = read_channels(root.table_or_empty("log"));
@@ -340,7 +345,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
     data.kind = root.choice("kind", {"time_series", "static"}) == "static" ? MeasurementKind::steady
                                                                            : MeasurementKind::time_series;
     data.title = root.string_or("title", {});
-    data.motion = root.choice("motion", {"heave", "heave_pitch", "surface", "body"}, "");
+    data.motion = read_motion(root);
     data.noise = read_noise(root.table_or_empty("noise"));
     const std::map<std::string, double> conditions = read_quantities(root.table_or_empty("conditions"), "condition");
     const LogChannels channels = read_channels(root.table_or_empty("log"));
