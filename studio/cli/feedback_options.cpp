@@ -10,34 +10,7 @@ namespace underbody::studio {
 
 namespace {
 
-/// Assignments onto numbers by their names; an unknown name is refused with the nearest one.
-struct Slot {
-    const char* name;
-    const char* unit;
-    double* value;
-};
-
-void assign(const std::string& text, const std::vector<Slot>& slots) {
-    std::vector<core::QuantityName> names;
-    std::vector<std::string> words;
-    for (const Slot& slot : slots) {
-        names.push_back({slot.name, slot.unit, "", ""});
-        words.emplace_back(slot.name);
-    }
-    for (const core::NamedValue& value : core::parse_assignments(text, names)) {
-        bool found = false;
-        for (const Slot& slot : slots) {
-            if (value.name == slot.name) {
-                *slot.value = value.value;
-                found = true;
-            }
-        }
-        if (!found) {
-            throw core::UsageError("name", "'" + value.name + "' is not known here", {},
-                                   core::did_you_mean(value.name, words));
-        }
-    }
-}
+using dynamics::assign;
 
 void refuse_both(const std::string& feedback, const std::string& lqr) {
     if (!feedback.empty() && !lqr.empty()) {
@@ -74,10 +47,7 @@ std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(const std::string& fe
     }
     dynamics::HeaveFeedback gains;
     if (!feedback.empty()) {
-        assign(feedback, {{"gap_gain", "N/m", &gains.gap_gain},
-                          {"velocity_gain", "N s/m", &gains.velocity_gain},
-                          {"reference", "m", &gains.reference},
-                          {"limit", "N", &gains.limit}});
+        gains = dynamics::heave_feedback(feedback);
     } else {
         double reference = std::nan(""), gap = 100, velocity = 1, force = 1, limit = 0;
         assign(lqr, {{"reference", "m", &reference},
@@ -104,17 +74,8 @@ std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feed
     if (feedback.empty() && lqr.empty()) {
         return std::nullopt;
     }
-    dynamics::PitchFeedback gains;
     if (!feedback.empty()) {
-        assign(feedback, {{"gap_gain", "N/m", &gains.force_gain[0]},
-                          {"velocity_gain", "N s/m", &gains.force_gain[1]},
-                          {"reference", "m", &gains.reference[0]},
-                          {"limit", "N", &gains.force_limit},
-                          {"pitch_gain", "N m/rad", &gains.moment_gain[2]},
-                          {"pitch_rate_gain", "N m s/rad", &gains.moment_gain[3]},
-                          {"pitch_reference", "rad", &gains.reference[2]},
-                          {"moment_limit", "N m", &gains.moment_limit}});
-        return gains;
+        return dynamics::pitch_feedback(feedback);
     }
     dynamics::PitchWeights weights;
     double reference = std::nan(""), pitch = 0, limit = 0, moment_limit = 0;
@@ -133,7 +94,7 @@ std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feed
     }
     check_weights(
         {weights.state[0], weights.state[1], weights.state[2], weights.state[3], weights.force, weights.moment});
-    gains = dynamics::pitch_lqr(plant, reference, pitch, weights);
+    dynamics::PitchFeedback gains = dynamics::pitch_lqr(plant, reference, pitch, weights);
     gains.force_limit = limit;
     gains.moment_limit = moment_limit;
     return gains;

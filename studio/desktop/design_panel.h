@@ -78,6 +78,7 @@ private:
     void fit_view();
     void draw_section();
     void show_card();
+    [[nodiscard]] std::vector<std::array<QString, 2>> lift_rows() const;
     void show_lift();
     void learn();
     void fit_lift();

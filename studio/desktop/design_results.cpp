@@ -56,13 +56,52 @@ const std::vector<Result>& results() {
 
 }  // namespace
 
+/// What is known of the lift at the gap, and where it carries the net weight; of another shape it is said so.
+std::vector<std::array<QString, 2>> DesignPanel::lift_rows() const {
+    const QString none = "–";
+    QString lift = none, stable = none, kick = none;
+    const double gap = state().design.gap;
+    if (table_ && table_->axes().size() == 1) {
+        const auto& axis = table_->axes().front();
+        if (gap >= axis.lower && gap <= axis.upper) {
+            const auto at = table_->at({&gap, 1});
+            lift = studio::shown(at.value, 1, 3, "") +
+                   (at.sigma > 0 ? "± " + studio::shown(at.sigma, 1, 2, "N") : QString("N"));
+        }
+        if (const auto weight = net_weight()) {
+            tables::EquilibriumOptions options;
+            options.net_weight = *weight;
+            options.virtual_mass = lift_.table->virtual_mass;
+            const tables::Equilibrium* nearest = nullptr;
+            const auto found = tables::equilibria(*table_, options);
+            QStringList gaps;
+            for (const auto& one : found.all) {
+                if (one.stability == tables::Stability::stable) {
+                    gaps << qt(core::format_number(1e3 * one.gap, 3));
+                    nearest =
+                        nearest == nullptr || std::abs(one.gap - gap) < std::abs(nearest->gap - gap) ? &one : nearest;
+                }
+            }
+            stable = gaps.isEmpty() ? QString("none") : gaps.join(", ") + " mm";
+            kick = nearest != nullptr && options.virtual_mass > 0
+                       ? studio::shown(nearest->kick_velocity, 1e3, 3, "mm/s")
+                       : none;
+        }
+    }
+    const QString of = lift_.basis == cases::KnownLift::Basis::this_shape || !table_ ? "" : " (nearest)";
+    return {{"lift" + of, lift}, {"stable gaps" + of, stable}, {"largest kick" + of, kick}};
+}
+
 void DesignPanel::show_card() {
-    card_->setRowCount(static_cast<int>(results().size()));
+    const auto lift = lift_rows();
+    card_->setRowCount(static_cast<int>(results().size() + lift.size()));
     for (int row = 0; row < card_->rowCount(); ++row) {
-        const Result& result = results()[static_cast<std::size_t>(row)];
-        const QString now = shown_ ? result.of(*shown_) : QString();
-        const QString was = before_ ? result.of(*before_) : QString();
-        const QStringList cells = {result.name, now, was};
+        const auto at = static_cast<std::size_t>(row);
+        const bool body = at < results().size();
+        const QString name = body ? results()[at].name : lift[at - results().size()][0];
+        const QString now = !body ? lift[at - results().size()][1] : shown_ ? results()[at].of(*shown_) : QString();
+        const QString was = body && before_ ? results()[at].of(*before_) : QString();
+        const QStringList cells = {name, now, was};
         for (int column = 0; column < 3; ++column) {
             auto* item = card_->item(row, column);
             if (item == nullptr) {
@@ -175,6 +214,7 @@ void DesignPanel::show_lift() {
     } else if (table_) {
         draw_lift();
     }
+    show_card();
     show_map();
 }
 
@@ -191,6 +231,7 @@ void DesignPanel::fit_lift() {
                 if (table_of_ == name) {
                     table_ = table;
                     draw_lift();
+                    show_card();
                 }
             };
         },

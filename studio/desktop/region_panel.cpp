@@ -119,6 +119,13 @@ void RegionPanel::build_controls(QFormLayout& form) {
     form.addRow(logarithmic_);
     connect(logarithmic_, &QCheckBox::clicked, this,
             [this](bool on) { act(on ? "logarithmic=on" : "logarithmic=off"); });
+    feedback_ = new QLineEdit;
+    feedback_->setAccessibleName("Feedback");
+    feedback_->setPlaceholderText("none; gap_gain=10,reference=20mm");
+    feedback_->setToolTip(
+        "Closes the loop: gap_gain, velocity_gain, reference, limit; with pitch also pitch_gain, pitch_rate_gain, "
+        "pitch_reference, moment_limit (SI or with units)");
+    form.addRow("Under &feedback", feedback_);
     sweep_text_ = new QLineEdit;
     sweep_text_->setAccessibleName("Condition that is swept");
     sweep_text_->setPlaceholderText("speed=0.3:0.7");
@@ -174,6 +181,7 @@ void RegionPanel::build_controls(QFormLayout& form) {
     };
     text(axes_, "axes");
     text(sweep_text_, "sweep");
+    text(feedback_, "feedback");
 }
 
 void RegionPanel::act(const std::string& assignment) {
@@ -195,6 +203,7 @@ void RegionPanel::say(const QString& text) {
     sweep_.reset();
     known_.reset();
     trajectory_.reset();
+    pitch_trajectory_.reset();
     map_of_.clear();
     about_of_.clear();
     motion_of_.clear();
@@ -346,6 +355,7 @@ std::string RegionPanel::map_key(const std::string& kind) const {
                ? " " + core::format_number(view.gap_noise) + " " + core::format_number(view.velocity_noise) + " " +
                      core::format_number(view.drag_error)
                : "";
+    key += view.feedback.empty() || kind == "estimator" ? "" : " " + view.feedback;
     for (const auto& [name, value] : settings().set) {
         key += " " + name + "=" + core::format_number(value);
     }
@@ -353,6 +363,13 @@ std::string RegionPanel::map_key(const std::string& kind) const {
 }
 
 std::string RegionPanel::motion_key() const {
+    std::string pitched;
+    for (const auto& [name, value] : settings().start_of) {
+        pitched += " " + name + "=" + core::format_number(value);
+    }
+    if (!pitched.empty()) {
+        return map_key("ends") + " from" + pitched;
+    }
     const auto& start = settings().start;
     return start
                ? map_key("ends") + " from " + core::format_number((*start)[0]) + " " + core::format_number((*start)[1])
@@ -362,7 +379,8 @@ std::string RegionPanel::motion_key() const {
 void RegionPanel::fill_kinds() {
     const RegionView& view = settings();
     show_->setCurrentIndex(show_->findData(qt(view.show)));
-    for (const auto& [field, text] : {std::pair{axes_, view.axes}, {sweep_text_, view.sweep}}) {
+    for (const auto& [field, text] :
+         {std::pair{axes_, view.axes}, {sweep_text_, view.sweep}, {feedback_, view.feedback}}) {
         if (!field->isModified()) {
             field->setText(qt(text));
             field->setModified(false);
@@ -454,8 +472,13 @@ void RegionPanel::choose_view(const std::string& name, bool shown) {
 }
 
 bool RegionPanel::has_motions() const {
-    return region_ && region_->axes.size() == 2 && region_->axes[0].name == "gap" &&
-           region_->axes[1].name == "heave_velocity";
+    return region_ &&
+           std::any_of(region_->axes.begin(), region_->axes.end(), [](const auto& axis) { return axis.name == "gap"; });
+}
+
+bool RegionPanel::pitches() const {
+    const auto all = axes();
+    return std::any_of(all.begin(), all.end(), [](const auto& axis) { return axis.name.starts_with("pitch"); });
 }
 
 }  // namespace underbody::studio

@@ -23,6 +23,7 @@ struct Figure;
 
 namespace underbody::dynamics {
 struct Model;
+struct PitchTrajectory;
 struct ProbabilityMap;
 struct RegionOptions;
 struct RegionSweep;
@@ -46,6 +47,10 @@ public:
     void export_picture(const std::filesystem::path& path) override;
     [[nodiscard]] bool has_table() const override;
     void export_table(const std::filesystem::path& path) override;
+    /// The motion in heave and pitch that is shown, of a map over one of pitch's axes.
+    [[nodiscard]] std::shared_ptr<const dynamics::PitchTrajectory> pitch_trajectory() const {
+        return pitch_trajectory_;
+    }
     /// The motion that is shown; nullptr while there is none.
     [[nodiscard]] std::shared_ptr<const dynamics::Trajectory> trajectory() const { return trajectory_; }
     [[nodiscard]] std::shared_ptr<const dynamics::StabilityRegion> region() const { return region_; }
@@ -80,12 +85,16 @@ private:
     void compute_estimator();
     void show_known();
     void compute_motion();
+    void compute_pitch_motion();
+    /// Heave with pitch: an axis of the map is pitch or its rate.
+    [[nodiscard]] bool pitches() const;
+    void close_loop(dynamics::RegionOptions& options) const;
     /// A map that failed or was cancelled is not waited for.
     void say_when_nothing(const std::string& kind);
     void fill_kinds();
     /// With the scale of the gap that the state wants.
     void show_map(const std::string& kind, core::Figure figure);
-    /// Whether motions of the map that is shown can be drawn: a map of ends over gap and heave velocity.
+    /// Whether motions of the map that is shown can be drawn: a map of ends with the gap among its axes.
     [[nodiscard]] bool has_motions() const;
     void show_region();
     void start_from(double x, double y);
@@ -108,6 +117,7 @@ private:
     std::shared_ptr<const dynamics::RegionSweep> sweep_;
     std::shared_ptr<const KnownAlongGap> known_;
     std::shared_ptr<const dynamics::Trajectory> trajectory_;
+    std::shared_ptr<const dynamics::PitchTrajectory> pitch_trajectory_;
     std::map<std::string, std::string> map_of_;  ///< kind -> what its map is, or will be, made of
     std::map<std::string, QString> about_of_;    ///< kind -> what is said of its map
     std::string motion_of_;
@@ -117,6 +127,7 @@ private:
     QComboBox* show_ = nullptr;
     QLineEdit* axes_ = nullptr;
     QCheckBox* logarithmic_ = nullptr;
+    QLineEdit* feedback_ = nullptr;
     QLineEdit* sweep_text_ = nullptr;
     NumberEdit* gap_noise_ = nullptr;
     NumberEdit* velocity_noise_ = nullptr;

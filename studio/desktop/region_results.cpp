@@ -3,6 +3,8 @@
 #include "cases/region_model.h"
 #include "studio/desktop/region_known.h"
 #include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/feedback.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/basin/region.h"
 // clang-format on
 
@@ -18,6 +20,7 @@
 #include <QSpinBox>
 #include <QSplitter>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/table.h"
@@ -59,24 +62,30 @@ QString summary(const dynamics::StabilityRegion& region) {
     return text;
 }
 
-/// Adds the trajectory to the map, in the map's units.
-void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, const dynamics::Trajectory& trajectory) {
-    const auto values_of = [&](const std::string& axis) -> const std::vector<double>* {
-        return axis == "gap" ? &trajectory.gap : axis == "heave_velocity" ? &trajectory.heave_velocity : nullptr;
-    };
-    const auto* x = values_of(region.axes[0].name);
-    const auto* y = values_of(region.axes[1].name);
-    if (x == nullptr || y == nullptr || x->empty()) {
+/// Of a state of the motion in heave and pitch.
+std::size_t place_of(const std::string& axis) {
+    return axis == "gap" ? 0U : axis == "heave_velocity" ? 1U : axis == "pitch" ? 2U : 3U;
+}
+const char* unit_of(const std::string& axis) {
+    constexpr std::array<const char*, 4> units = {"m", "m/s", "rad", "rad/s"};
+    return units[place_of(axis)];
+}
+
+/// Adds the motion to the map, in the map's units; of each axis what `values_of` it gives.
+template <class Values>
+void overlay(core::Figure& figure, const dynamics::StabilityRegion& region, const Values& values_of) {
+    const std::vector<double> x = values_of(region.axes[0].name), y = values_of(region.axes[1].name);
+    if (x.empty() || y.empty()) {
         return;
     }
-    const auto to_x = core::conversion(region.axes[0].name == "gap" ? "m" : "m/s", figure.x.unit);
-    const auto to_y = core::conversion(region.axes[1].name == "gap" ? "m" : "m/s", figure.y.unit);
+    const auto to_x = core::conversion(unit_of(region.axes[0].name), figure.x.unit);
+    const auto to_y = core::conversion(unit_of(region.axes[1].name), figure.y.unit);
     core::FigureCurve path;
     path.name = "motion from the start";
     path.colour = {20, 20, 20, 170};
     path.width = 0.9;  // one that goes round a hundred times is no black spot
-    std::transform(x->begin(), x->end(), std::back_inserter(path.x), to_x);
-    std::transform(y->begin(), y->end(), std::back_inserter(path.y), to_y);
+    std::transform(x.begin(), x.end(), std::back_inserter(path.x), to_x);
+    std::transform(y.begin(), y.end(), std::back_inserter(path.y), to_y);
     core::FigurePoints start{
         "start", {path.x.front()}, {path.y.front()}, {}, {20, 20, 20, 255}, core::FigurePoints::Shape::diamond, 10};
     figure.curves.push_back(std::move(path));
@@ -99,7 +108,18 @@ void RegionPanel::forget(const std::string& kind) {
     } else {
         region_.reset();
         trajectory_.reset();
+        pitch_trajectory_.reset();
         motion_of_.clear();
+    }
+}
+
+/// Throws core::UsageError where gains of the pitch are given for a map in heave.
+void RegionPanel::close_loop(dynamics::RegionOptions& options) const {
+    const std::string& gains = settings().feedback;
+    if (!gains.empty() && pitches()) {
+        options.pitch_feedback = std::make_shared<dynamics::PitchFeedback>(dynamics::pitch_feedback(gains));
+    } else if (!gains.empty()) {
+        options.feedback = std::make_shared<dynamics::HeaveFeedback>(dynamics::heave_feedback(gains));
     }
 }
 
@@ -136,6 +156,12 @@ void RegionPanel::compute() {
         options.gap_by_ratio = by_ratio();
         options.columns = options.rows = static_cast<std::size_t>(settings().cells);
         options.duration = duration();
+        try {
+            close_loop(options);
+        } catch (const core::Error& error) {
+            map(kind).show_text(qt(error.what()));
+            continue;
+        }
         if (kind == "probability") {
             compute_probability(options);
         } else if (kind == "sweep") {
@@ -288,10 +314,15 @@ void RegionPanel::compute_motion() {
     }
     motion_of_ = motion_key();
     trajectory_.reset();
+    pitch_trajectory_.reset();
     jobs_.cancel("trajectory");
-    if (!settings().start || !has_motions()) {
+    if (pitches() && !settings().start_of.empty() && has_motions()) {
+        compute_pitch_motion();
+        return;
+    }
+    if (pitches() || !settings().start || !has_motions()) {
         motion_->show_text(has_motions() ? "Click a start in the map to see its motion"
-                                         : "Motions are drawn over gap and heave velocity");
+                                         : "Motions start at a gap: take it as an axis of the map");
         show_region();
         return;
     }
@@ -302,16 +333,49 @@ void RegionPanel::compute_motion() {
     options.escape_gap = region_->escape_gap;
     options.stop_at_contact = true;
     jobs_.start("trajectory", "motion",
-                [this, model = changed_model(), start = *settings().start, options,
+                [this, model = changed_model(), start = *settings().start, options, gains = settings().feedback,
                  key = motion_of_](core::Progress& progress) {
                     dynamics::InputSignals inputs;
                     inputs.held = model.conditions;
-                    auto trajectory = std::make_shared<const dynamics::Trajectory>(
-                        dynamics::simulate(model, start[0], start[1], inputs, options, progress));
+                    const dynamics::HeaveFeedback loop =
+                        gains.empty() ? dynamics::HeaveFeedback() : dynamics::heave_feedback(gains);
+                    auto trajectory = std::make_shared<const dynamics::Trajectory>(dynamics::simulate(
+                        model, start[0], start[1], inputs, options, progress, gains.empty() ? nullptr : &loop));
                     return [this, trajectory, key] {
                         if (key == motion_of_) {
                             trajectory_ = trajectory;
                             show_trajectory();
+                        }
+                    };
+                });
+}
+
+void RegionPanel::compute_pitch_motion() {
+    motion_->show_text("…");
+    dynamics::TrajectoryOptions options;
+    options.duration = duration();
+    options.output_step = options.duration / 3000;
+    options.escape_gap = region_->escape_gap;
+    options.stop_at_contact = true;
+    dynamics::PitchState start{};
+    for (const auto& [name, value] : settings().start_of) {
+        start[place_of(name)] = value;
+    }
+    jobs_.start("trajectory", "motion",
+                [this, model = changed_model(), start, options, gains = settings().feedback,
+                 key = motion_of_](core::Progress& progress) {
+                    dynamics::HeavePitch plant(model, model.conditions);
+                    if (!gains.empty()) {
+                        plant.close_loop(dynamics::pitch_feedback(gains));
+                    }
+                    auto motion = std::make_shared<const dynamics::PitchTrajectory>(
+                        dynamics::simulate(plant, start, options, progress));
+                    return [this, motion, key] {
+                        if (key == motion_of_) {
+                            pitch_trajectory_ = motion;
+                            show_region();
+                            motion_->show_figure(dynamics::trajectory_figure(*motion));
+                            Q_EMIT remark("the motion ends by " + qt(motion->end));
                         }
                     };
                 });
@@ -324,7 +388,17 @@ void RegionPanel::show_region() {
     }
     core::Figure figure = dynamics::region_figure(*region_);
     if (trajectory_) {
-        overlay(figure, *region_, *trajectory_);
+        overlay(figure, *region_, [this](const std::string& axis) {
+            return axis == "gap" ? trajectory_->gap : trajectory_->heave_velocity;
+        });
+    } else if (pitch_trajectory_) {
+        overlay(figure, *region_, [this](const std::string& axis) {
+            std::vector<double> values;
+            for (const auto& state : pitch_trajectory_->state) {
+                values.push_back(state[place_of(axis)]);
+            }
+            return values;
+        });
     }
     show_map("ends", std::move(figure));
 }
@@ -346,23 +420,20 @@ void RegionPanel::start_from(double x, double y) {
     if (!region_) {
         return;
     }
-    const core::Figure figure = dynamics::region_figure(*region_);
-    double gap = std::nan("");
-    double velocity = 0;
-    const auto take = [&](const std::string& axis, double value, const std::string& unit) {
-        if (axis == "gap") {
-            gap = core::convert(value, unit, "m");
-        } else if (axis == "heave_velocity") {
-            velocity = core::convert(value, unit, "m/s");
-        }
-    };
-    take(region_->axes[0].name, x, figure.x.unit);
-    take(region_->axes[1].name, y, figure.y.unit);
-    if (std::isnan(gap) || !has_motions()) {
-        Q_EMIT remark("motions are drawn over gap and heave velocity");
+    if (!has_motions()) {
+        Q_EMIT remark("motions start at a gap: take it as an axis of the map");
         return;
     }
-    act("start=" + core::format_number(gap) + "m," + core::format_number(velocity) + "m/s");
+    const core::Figure figure = dynamics::region_figure(*region_);
+    const std::array<std::string, 2> names = {region_->axes[0].name, region_->axes[1].name};
+    const std::array<double, 2> at = {core::convert(x, figure.x.unit, unit_of(names[0])),
+                                      core::convert(y, figure.y.unit, unit_of(names[1]))};
+    if (pitches()) {
+        act("start=" + names[0] + "=" + core::format_number(at[0]) + "," + names[1] + "=" + core::format_number(at[1]));
+        return;
+    }
+    const bool first = names[0] == "gap";
+    act("start=" + core::format_number(at[first ? 0 : 1]) + "m," + core::format_number(at[first ? 1 : 0]) + "m/s");
 }
 
 void RegionPanel::show_trajectory() {
@@ -383,15 +454,18 @@ bool RegionPanel::has_picture() const {
 
 void RegionPanel::export_picture(const std::filesystem::path& path) { maps_.at(settings().show)->write(path); }
 
-bool RegionPanel::has_table() const { return trajectory_ != nullptr || known_ != nullptr; }
+bool RegionPanel::has_table() const {
+    return trajectory_ != nullptr || pitch_trajectory_ != nullptr || known_ != nullptr;
+}
 
 void RegionPanel::export_table(const std::filesystem::path& path) {
     if (known_) {
         core::write_csv(path, known_->information.table());
         return;
     }
-    core::Table table = trajectory_->table();
-    table.comments.push_back("motion in the study's region '" + spec_.name + "', end: " + trajectory_->end);
+    core::Table table = trajectory_ ? trajectory_->table() : pitch_trajectory_->table();
+    table.comments.push_back("motion in the study's region '" + spec_.name +
+                             "', end: " + (trajectory_ ? trajectory_->end : pitch_trajectory_->end));
     core::write_csv(path, table);
 }
 

@@ -29,7 +29,7 @@ public:
         title_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
         hide_->setText("×");
         hide_->setAutoRaise(true);
-        hide_->setFocusPolicy(Qt::NoFocus);  // by keyboard the menu of views does it
+        hide_->setFocusPolicy(Qt::TabFocus);
         hide_->setAccessibleName("Hide " + title);
         hide_->setToolTip("Hides this view; View > Views in this workspace shows it again");
         connect(hide_, &QToolButton::clicked, &panel, [&panel, name] { panel.choose_view(name, false); });

@@ -151,6 +151,9 @@ std::string region_command(const State& state, const Session& session, const std
     } else if (view->second.show == "sweep" && !view->second.sweep.empty()) {
         line.insert(line.end(), {"--sweep", view->second.sweep, "--steps", std::to_string(view->second.steps)});
     }
+    if (!view->second.feedback.empty()) {
+        line.insert(line.end(), {"--feedback", view->second.feedback});
+    }
     for (const auto& [parameter, value] : view->second.set) {
         line.insert(line.end(), {"--set", parameter + "=" + core::format_number(value)});
     }

@@ -6,6 +6,7 @@
 #include "geometry/body/variants.h"
 #include "studio/desktop/state/action_parts.h"
 #include "studio/desktop/state/known_things.h"
+#include "surrogates/dynamics/simulate/feedback.h"
 
 namespace underbody::studio::action {
 
@@ -86,6 +87,12 @@ State look_at_region(State state, const Words& words, const Session& session) {
             }
             view.axes = text;
             view.start.reset();
+            view.start_of.clear();
+        } else if (key == "feedback") {
+            if (!text.empty()) {
+                static_cast<void>(dynamics::pitch_feedback(text));  // says what is wrong with it
+            }
+            view.feedback = text;
         } else if (key == "sweep") {
             if (!text.empty() && core::parse_ranges(text).size() != 1) {
                 throw UsageError("range", "one condition is swept, not '" + text + "'", {}, "such as speed=0.3:0.7");
@@ -108,8 +115,15 @@ State look_at_region(State state, const Words& words, const Session& session) {
             view.duration = number_or_none(text, "s");
             within(view.duration.value_or(1), 1e-3, 1e6, "duration (s)");
         } else if (key == "start") {
-            if (text.empty()) {
-                view.start.reset();
+            view.start.reset();
+            view.start_of.clear();
+            if (text.find('=') != std::string::npos) {
+                for (const auto& value : core::parse_assignments(text)) {
+                    need_one_of(value.name, {"gap", "heave_velocity", "pitch", "pitch_rate"}, "state of a start");
+                    view.start_of[value.name] = value.value;
+                }
+            }
+            if (text.empty() || !view.start_of.empty()) {
                 continue;
             }
             const auto parts = core::split(text, ',');
@@ -128,8 +142,8 @@ State look_at_region(State state, const Words& words, const Session& session) {
             }
         } else {
             unknown_key(key,
-                        {"cells", "duration", "start", "show", "beside", "axes", "sweep", "steps", "draws", "gap_noise",
-                         "velocity_noise", "drag_error", "logarithmic", "as_declared", "set.PARAMETER"});
+                        {"cells", "duration", "start", "show", "beside", "axes", "feedback", "sweep", "steps", "draws",
+                         "gap_noise", "velocity_noise", "drag_error", "logarithmic", "as_declared", "set.PARAMETER"});
         }
     }
     return state;

@@ -177,6 +177,7 @@ void fields(auto& v, const RegionView& /*kind*/, const auto& field) {
     field("show", v.show);
     field("beside", v.beside);
     field("axes", v.axes);
+    field("feedback", v.feedback);
     field("sweep", v.sweep);
     field("steps", v.steps);
     field("draws", v.draws);
@@ -186,6 +187,7 @@ void fields(auto& v, const RegionView& /*kind*/, const auto& field) {
     field("logarithmic", v.logarithmic);
     field("duration", v.duration);
     field("start", v.start);
+    field("start_of", v.start_of);
 }
 
 void fields(auto& v, const ExportRecord& /*kind*/, const auto& field) {

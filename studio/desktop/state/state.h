@@ -45,6 +45,7 @@ struct RegionView {
     std::string show = "ends";                   ///< "ends", "probability", "sweep", "estimator"
     std::vector<std::string> beside;             ///< other kinds of map, in cells of their own
     std::string axes;                            ///< "gap=1mm:20mm,pitch=-3deg:3deg"; empty: as the study says
+    std::string feedback;                        ///< "gap_gain=10,reference=20mm": the loop closed by it; empty: open
     std::string sweep;                           ///< "jet_voltage=0:10": what the maps of a sweep differ in
     int steps = 5;                               ///< maps of the sweep
     std::optional<bool> logarithmic;             ///< gap axis; none: where it spans decades
@@ -54,6 +55,7 @@ struct RegionView {
     double drag_error = 0.2;                     ///< relative deviation of the declared drag law
     std::optional<double> duration;              ///< s; none: as the study says
     std::optional<std::array<double, 2>> start;  ///< gap (m) and heave velocity (m/s) of the motion that is shown
+    std::map<std::string, double> start_of;      ///< of a map over other axes: state -> SI
     bool operator==(const RegionView&) const = default;
 };
 

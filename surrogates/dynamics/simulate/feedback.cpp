@@ -1,8 +1,10 @@
 #include "surrogates/dynamics/simulate/feedback.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "core/error.h"
+#include "core/text.h"
+#include "core/units.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
@@ -19,6 +21,60 @@ void close_loop(HeavePlant& plant, const HeaveFeedback& feedback) {
     terms.stiffness += gap_gain;
     terms.extra_linear += velocity_gain;
     terms.constant -= velocity_gain * terms.current;  // the feedback acts on w itself
+}
+
+void assign(const std::string& text, const std::vector<NamedNumber>& numbers) {
+    std::vector<core::QuantityName> names;
+    std::vector<std::string> words;
+    for (const NamedNumber& number : numbers) {
+        names.push_back({number.name, number.unit, "", ""});
+        words.emplace_back(number.name);
+    }
+    for (const core::NamedValue& value : core::parse_assignments(text, names)) {
+        bool found = false;
+        for (const NamedNumber& number : numbers) {
+            if (value.name == number.name) {
+                *number.value = value.value;
+                found = true;
+            }
+        }
+        if (!found) {
+            throw core::UsageError("name", "'" + value.name + "' is not known here", {},
+                                   core::did_you_mean(value.name, words));
+        }
+    }
+}
+
+namespace {
+void check_limit(double limit) {
+    if (limit < 0) {
+        throw core::UsageError("range", "a limit is not negative");
+    }
+}
+}  // namespace
+
+HeaveFeedback heave_feedback(const std::string& gains) {
+    HeaveFeedback feedback;
+    assign(gains, {{"gap_gain", "N/m", &feedback.gap_gain},
+                   {"velocity_gain", "N s/m", &feedback.velocity_gain},
+                   {"reference", "m", &feedback.reference},
+                   {"limit", "N", &feedback.limit}});
+    check_limit(feedback.limit);
+    return feedback;
+}
+
+PitchFeedback pitch_feedback(const std::string& gains) {
+    PitchFeedback feedback;
+    assign(gains, {{"gap_gain", "N/m", &feedback.force_gain[0]},
+                   {"velocity_gain", "N s/m", &feedback.force_gain[1]},
+                   {"reference", "m", &feedback.reference[0]},
+                   {"limit", "N", &feedback.force_limit},
+                   {"pitch_gain", "N m/rad", &feedback.moment_gain[2]},
+                   {"pitch_rate_gain", "N m s/rad", &feedback.moment_gain[3]},
+                   {"pitch_reference", "rad", &feedback.reference[2]},
+                   {"moment_limit", "N m", &feedback.moment_limit}});
+    check_limit(std::min(feedback.force_limit, feedback.moment_limit));
+    return feedback;
 }
 
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,

@@ -18,6 +18,20 @@ namespace underbody::dynamics {
 /// argument of the region still holds.
 void close_loop(HeavePlant& plant, const HeaveFeedback& feedback);
 
+/// A number that a text may set by its name.
+struct NamedNumber {
+    const char* name;
+    const char* unit;  ///< SI, of the number and of a text without one
+    double* value;
+};
+/// "gap_gain=10,reference=20mm" onto numbers. Throws core::UsageError for a name that is none of them, with the
+/// nearest.
+void assign(const std::string& text, const std::vector<NamedNumber>& numbers);
+/// "gap_gain=10,velocity_gain=9,reference=20mm,limit=0.05N". Throws core::UsageError.
+HeaveFeedback heave_feedback(const std::string& gains);
+/// Also pitch_gain, pitch_rate_gain, pitch_reference, moment_limit.
+PitchFeedback pitch_feedback(const std::string& gains);
+
 /// LQR gains of heave at a gap: states (heave_velocity, gap), weights q = (q_w, q_h), r, on M dw/dt = -k (h - h0) - d w
 /// + u.
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,

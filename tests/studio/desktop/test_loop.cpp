@@ -159,6 +159,14 @@ TEST(DiscoveryPage, HasNoNamesOfVariables) {
     EXPECT_TRUE(page.contains("next-experiment.csv"));
 }
 
+// The sentence and the table below it tell one number in one unit.
+TEST(DiscoveryPage, TellsSmallForcesInTheUnitOfTheSentence) {
+    const QString page = discovery_page(R"json({"verdict": "effect", "sentence": "friction (force 9.98 +- 0.18 mN)",
+        "effects": [{"name": "coulomb_friction", "probability": 1,
+                     "parameters": {"force": {"value": 0.009983, "sigma": 0.00018, "unit": "N"}}}]})json");
+    EXPECT_NE(page.indexOf("force = 9.983 ± 0.18 mN"), -1) << page.toStdString();
+}
+
 TEST(DiscoveryPage, SaysWhichDataTheErrorIsOf) {
     const auto page = [](const std::string& held_out) {
         return discovery_page(

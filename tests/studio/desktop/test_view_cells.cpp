@@ -2,12 +2,15 @@
 // First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
 // clang-format off
 #include "surrogates/dynamics/basin/region.h"
+#include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/simulate/heave_pitch.h"
 // clang-format on
 
 #include <gtest/gtest.h>
 
 #include <QMenu>
 #include <QToolButton>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
@@ -130,6 +133,59 @@ TEST_F(ViewCells, KindsOfMapsStandBesideEachOther) {
     settle(*window_);
     EXPECT_FALSE(stability.region());
     EXPECT_EQ(window_->desk().state().regions.at("glide").show, "probability");
+}
+
+// Maps and motions with the loop closed; the gains are those of `region --feedback`.
+TEST_F(Window, AMapIsMadeUnderFeedback) {
+    open(computed_study());
+    act("workspace stability");
+    act("region glide cells=20 start=5mm,0mm/s");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    ASSERT_TRUE(stability.trajectory()) << window_->last_error().toStdString();
+    const double open_end = stability.trajectory()->gap.back();
+    act("region glide feedback=gap_gain=200,velocity_gain=60,reference=12mm");
+    settle(*window_);
+    ASSERT_TRUE(stability.region()) << window_->last_error().toStdString();
+    const double closed_end = stability.trajectory()->gap.back();
+    EXPECT_NEAR(closed_end, 0.012, 0.001) << "held";
+    EXPECT_GT(std::abs(open_end - closed_end), 0.003);
+    bool held = false;
+    for (const auto& end : stability.region()->classes) {
+        held = held || (std::abs(end.gap - closed_end) < 1e-4 && end.fraction > 0.9);
+    }
+    EXPECT_TRUE(held) << "every start of the map ends there";
+    EXPECT_NE(window_->desk().history().steps().back().command.find("--feedback gap_gain=200"), std::string::npos);
+    window_->desk().undo();
+    settle(*window_);
+    EXPECT_NEAR(stability.trajectory()->gap.back(), open_end, 1e-9);
+    EXPECT_FALSE(act("region glide feedback=gap_gian=1"));
+}
+
+// A click in a map over gap and pitch shows that motion, too.
+TEST_F(Window, AMotionInHeaveAndPitchIsSeen) {
+    const fs::path folder = copy_of_study();
+    fs::copy_file(test::source_folder() / "cases" / "evie" / "model.toml", folder / "model.toml");
+    fs::copy(test::source_folder() / "cases" / "evie" / "tables", folder / "tables");
+    core::write_file(folder / "study.toml", core::read_file(folder / "study.toml") +
+                                                "\n[[region]]\nname = \"pitched\"\nmodel = \"model.toml\"\n"
+                                                "axes = \"gap=2mm:30mm,pitch=-3deg:3deg\"\nfor = \"2 s\"\n"
+                                                "columns = 20\nrows = 20\n");
+    open(folder);
+    act("workspace stability");
+    act("select region/pitched");
+    act("region pitched cells=20");
+    settle(*window_);
+    auto& stability = panel<RegionPanel>();
+    ASSERT_TRUE(stability.region()) << window_->last_error().toStdString();
+    act("region pitched start=gap=8mm,pitch=1deg");
+    settle(*window_);
+    ASSERT_TRUE(stability.pitch_trajectory()) << window_->last_error().toStdString();
+    const auto& motion = *stability.pitch_trajectory();
+    EXPECT_DOUBLE_EQ(motion.state.front()[0], 0.008);
+    EXPECT_NEAR(motion.state.front()[2], 0.0174533, 1e-6);
+    EXPECT_GT(motion.time.back(), 0);
+    EXPECT_TRUE(stability.has_table());
 }
 
 TEST_F(ViewCells, ViewsOfATableStandBesideEachOther) {

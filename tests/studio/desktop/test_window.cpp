@@ -19,6 +19,7 @@
 #include <QTableWidget>
 #include <QTest>
 #include <cmath>
+#include <fstream>
 #include <future>
 #include <random>
 #include <thread>
@@ -117,6 +118,23 @@ TEST_F(Window, ShowsTheBodyOfTheLibraryAndUndoBringsItBack) {
     const QString shown = design.card()->item(0, 1)->text();
     EXPECT_EQ(shown.toStdString(), core::format_number(1e6 * body.mass.volume, 6) + " cm³");
     EXPECT_FALSE(design.card()->item(0, 2)->text().isEmpty()) << "before";
+    const auto card = [&](const QString& name) {
+        for (int row = 0; row < design.card()->rowCount(); ++row) {
+            if (design.card()->item(row, 0)->text() == name) {
+                return design.card()->item(row, 1)->text();
+            }
+        }
+        return QString("no such row");
+    };
+    EXPECT_TRUE(card("lift (nearest)").contains("±")) << card("lift (nearest)").toStdString();
+    EXPECT_TRUE(card("stable gaps (nearest)").endsWith("mm")) << card("stable gaps (nearest)").toStdString();
+    const auto with_before = [&] {
+        const auto plots = design.findChildren<PlotView*>();
+        return std::count_if(plots.begin(), plots.end(), [](const PlotView* plot) {
+            return plot->has_figure() && plot->figure().title.find("before") != std::string::npos;
+        });
+    };
+    EXPECT_EQ(with_before(), 1) << "its outline in the section";
     QElapsedTimer time;
     time.start();
     window_->desk().undo();
@@ -323,6 +341,38 @@ TEST_F(Window, TakesWhatIsDroppedByItsContent) {
     core::write_file(folder_.path() / "broken.toml", "[body]\nlenght = \"3 mm\"\n");
     window_->take_files({folder_.path() / "broken.toml"});
     EXPECT_NE(window_->last_error().indexOf("lenght"), -1) << window_->last_error().toStdString();
+}
+
+double resident_megabytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmRSS:")) {
+            return std::stod(line.substr(6)) / 1024;
+        }
+    }
+    return 0;
+}
+
+// What a job took in small pieces goes back to the machine, not to a heap that is kept for the next ones.
+TEST_F(Window, WhatAJobTookIsGivenBack) {
+    auto kept = std::make_shared<std::vector<std::unique_ptr<char[]>>>();
+    window_->jobs().start("test", "pieces", [kept](core::Progress&) -> std::function<void()> {
+        std::vector<std::unique_ptr<char[]>> pieces;
+        for (int i = 0; i < 400000; ++i) {
+            pieces.push_back(std::make_unique<char[]>(200));
+            if (i % 4000 == 3999) {
+                kept->push_back(std::move(pieces.back()));
+            }
+        }
+        return {};
+    });
+    while (window_->jobs().busy()) {
+        QTest::qWait(5);
+    }
+    const double before = resident_megabytes();
+    QTest::qWait(1500);
+    EXPECT_LT(resident_megabytes(), before - 40);
+    EXPECT_EQ(kept->size(), 100U);
 }
 
 TEST_F(Window, ATableIsFittedAsTheStudySays) {
