@@ -4,11 +4,15 @@
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
+#include <QClipboard>
 #include <QComboBox>
 #include <QEvent>
+#include <QKeyEvent>
 #include <QPlainTextEdit>
 #include <QScrollBar>
 #include <QTextEdit>
+#include <algorithm>
+#include <utility>
 
 namespace underbody::studio {
 
@@ -24,11 +28,42 @@ void let_tab_leave(QObject* watched) {
     }
 }
 
+/// Several cells as a spreadsheet takes them, with the titles of their columns; one cell is copied by the view itself.
+bool copy_cells(const QAbstractItemView& view) {
+    QModelIndexList chosen =
+        view.selectionModel() != nullptr ? view.selectionModel()->selectedIndexes() : QModelIndexList();
+    if (chosen.size() < 2) {
+        return false;
+    }
+    std::stable_sort(chosen.begin(), chosen.end(), [](const QModelIndex& a, const QModelIndex& b) {
+        return a.parent() == b.parent() && std::pair(a.row(), a.column()) < std::pair(b.row(), b.column());
+    });
+    QStringList rows, cells, titles;
+    for (int i = 0; i < chosen.size(); ++i) {
+        const QModelIndex& one = chosen[i];
+        cells << one.data().toString().replace('\n', ' ');
+        if (rows.isEmpty()) {
+            titles << view.model()->headerData(one.column(), Qt::Horizontal).toString().replace('\n', ' ');
+        }
+        if (i + 1 == chosen.size() || chosen[i + 1].row() != one.row() || chosen[i + 1].parent() != one.parent()) {
+            rows << cells.join('\t');
+            cells.clear();
+        }
+    }
+    rows.prepend(titles.join('\t'));
+    QApplication::clipboard()->setText(rows.join('\n') + '\n');
+    return true;
+}
+
 }  // namespace
 
 InputGuard::InputGuard(QObject* parent) : QObject(parent) { qApp->installEventFilter(this); }
 
 bool InputGuard::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::KeyPress) {
+        const auto* view = qobject_cast<QAbstractItemView*>(watched);
+        return view != nullptr && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy) && copy_cells(*view);
+    }
     if (event->type() != QEvent::Wheel && event->type() != QEvent::Polish) {
         return false;
     }

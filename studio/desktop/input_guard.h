@@ -1,5 +1,6 @@
-// What the wheel and Tab do in the whole window. The wheel rolls the list that it is over: it changes a value only
-// where the value has the keyboard. Tab leaves every input: tables and texts keep it for themselves otherwise.
+// What the wheel, Tab and Ctrl+C on cells do in the whole window. The wheel rolls the list that it is over: it changes
+// a value only where the value has the keyboard. Tab leaves every input: tables and texts keep it for themselves
+// otherwise.
 #pragma once
 
 #include <QObject>

@@ -2,7 +2,10 @@
 
 #include <qcustomplot.h>
 
+#include <QAction>
+#include <QApplication>
 #include <QBoxLayout>
+#include <QClipboard>
 #include <QKeyEvent>
 #include <QPainter>
 #include <algorithm>
@@ -74,6 +77,25 @@ void draw_dressed(const core::Figure& figure, QCustomPlot& plot, const QPalette&
     dress(plot, palette);
 }
 
+/// Curves and points as a spreadsheet takes them.
+QString numbers_of(const core::Figure& figure) {
+    QString text = "series\t" + QString::fromStdString(axis_title(figure.x.label, figure.x.unit)) + "\t" +
+                   QString::fromStdString(axis_title(figure.y.label, figure.y.unit)) + "\n";
+    const auto add = [&](const auto& series) {
+        for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+            text += QString::fromStdString(series.name) + "\t" + QString::number(series.x[i], 'g', 9) + "\t" +
+                    QString::number(series.y[i], 'g', 9) + "\n";
+        }
+    };
+    for (const auto& curve : figure.curves) {
+        add(curve);
+    }
+    for (const auto& points : figure.points) {
+        add(points);
+    }
+    return text;
+}
+
 }  // namespace
 
 PlotView::PlotView(QWidget* parent) : QWidget(parent) {
@@ -83,9 +105,17 @@ PlotView::PlotView(QWidget* parent) : QWidget(parent) {
     plot_->setFocusPolicy(Qt::NoFocus);  // a click gives the keyboard to all of this
     column->addWidget(plot_);
     plot_->setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
+    auto* picture = new QAction("Copy &picture", this);
+    connect(picture, &QAction::triggered, this, [this] { QApplication::clipboard()->setPixmap(plot_->grab()); });
+    auto* numbers = new QAction("Copy &numbers", this);
+    connect(numbers, &QAction::triggered, this,
+            [this] { QApplication::clipboard()->setText(shown_ ? numbers_of(figure_) : sentence_); });
+    addActions({picture, numbers});
+    setContextMenuPolicy(Qt::ActionsContextMenu);
     plot_->setMinimumSize(260, 200);
     plot_->setToolTip(
-        "Wheel: zoom. Drag: move. Double click: show all.\nKeys: arrows (with Shift finely), Enter, + and -, Home.");
+        "Wheel: zoom. Drag: move. Double click: show all. Right button: copy.\nKeys: arrows (with Shift finely), "
+        "Enter, + and -, Home.");
     connect(plot_, &QCustomPlot::mouseMove, this, [this](QMouseEvent* event) {
         if (shown_ && plot_->axisRect() != nullptr && plot_->axisRect()->rect().contains(event->pos())) {
             say_place(plot_->xAxis->pixelToCoord(event->pos().x()), plot_->yAxis->pixelToCoord(event->pos().y()));

@@ -4,12 +4,16 @@
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QAbstractSpinBox>
+#include <QAction>
+#include <QApplication>
+#include <QClipboard>
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLineEdit>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTabBar>
+#include <QTableWidget>
 #include <QTest>
 #include <QToolBar>
 #include <set>
@@ -109,6 +113,36 @@ TEST_F(Window, EveryInputIsReachedByTab) {
 }
 
 // What the mouse does on a plot, keys do too.
+// A plot gives its picture and its numbers, rows of a table go into a spreadsheet.
+TEST_F(Window, EveryPlotAndTableIsCopied) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    PlotView* plot = nullptr;
+    for (auto* one : window_->findChildren<PlotView*>()) {
+        plot = one->isVisible() && one->has_figure() ? one : plot;
+    }
+    ASSERT_NE(plot, nullptr);
+    ASSERT_EQ(plot->actions().size(), 2);
+    plot->actions()[1]->trigger();
+    const QStringList lines = QApplication::clipboard()->text().split('\n');
+    ASSERT_GT(lines.size(), 100);
+    EXPECT_EQ(lines[0], "series\tgap (mm)\tlift force (N)");
+    EXPECT_EQ(lines[1].split('\t').size(), 3);
+    plot->actions()[0]->trigger();
+    EXPECT_FALSE(QApplication::clipboard()->image().isNull());
+    act("workspace explore");
+    settle(*window_);
+    auto* table = panel<ExplorePanel>().findChild<QTableWidget*>();
+    ASSERT_NE(table, nullptr);
+    table->selectRow(1);
+    QTest::keySequence(table, QKeySequence::Copy);
+    const QStringList rows = QApplication::clipboard()->text().split('\n', Qt::SkipEmptyParts);
+    ASSERT_EQ(rows.size(), 2);
+    EXPECT_TRUE(rows[0].startsWith("case\t")) << rows[0].toStdString();
+    EXPECT_TRUE(rows[1].startsWith(table->item(1, 0)->text() + "\t")) << rows[1].toStdString();
+}
+
 TEST_F(Window, AStartIsChosenByKeyboard) {
     open(computed_study());
     act("workspace stability");
