@@ -85,6 +85,16 @@ vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
     return mapper;
 }
 
+constexpr int samples = 4;  ///< a pixel, at rest
+
+bool is_software(vtkGenericOpenGLRenderWindow& window) {
+    static const bool yes = [&window] {
+        const std::string about = window.ReportCapabilities();
+        return about.find("llvmpipe") != std::string::npos || about.find("softpipe") != std::string::npos;
+    }();
+    return yes;
+}
+
 void dress_text(vtkTextProperty& text, int size, bool dark = false) {
     text.SetFontFamilyToArial();
     const double grey = dark ? 0.88 : 0.15;
@@ -97,43 +107,63 @@ void dress_text(vtkTextProperty& text, int size, bool dark = false) {
 
 }  // namespace
 
+void Scene::Parts::dress_bar() {
+    bar->SetLookupTable(colours);
+    bar->SetNumberOfLabels(5);
+    bar->SetUnconstrainedFontSize(true);
+    bar->SetBarRatio(0.25);
+    bar->SetVerticalTitleSeparation(10);
+    bar->SetWidth(0.11);
+    bar->SetHeight(0.62);
+    bar->SetPosition(0.875, 0.2);
+    bar->SetLabelFormat("%.3g");
+    bar->SetMaximumNumberOfColors(256);
+    dress_text(*bar->GetTitleTextProperty(), 15);
+    dress_text(*bar->GetLabelTextProperty(), 13);
+    bar->SetVisibility(false);
+    renderer->AddActor2D(bar);
+}
+
+void Scene::Parts::dress_axes() {
+    for (auto* caption :
+         {axes->GetXAxisCaptionActor2D(), axes->GetYAxisCaptionActor2D(), axes->GetZAxisCaptionActor2D()}) {
+        dress_text(*caption->GetCaptionTextProperty(), 14);
+    }
+    axes->SetXAxisLabelText("x");
+    axes->SetYAxisLabelText("y");
+    axes->SetZAxisLabelText("z");
+    marker->SetOrientationMarker(axes);
+    marker->SetInteractor(window->GetInteractor());
+    marker->SetViewport(0, 0, 0.16, 0.2);
+    marker->SetEnabled(1);
+    marker->InteractiveOff();
+}
+
+void Scene::Parts::dress_dot() {
+    vtkNew<vtkPolyDataMapper> dot_mapper;
+    dot_mapper->SetInputConnection(dot->GetOutputPort());
+    dot->SetThetaResolution(16);
+    dot->SetPhiResolution(16);
+    dot_actor->SetMapper(dot_mapper);
+    dot_actor->GetProperty()->SetColor(0.9, 0.1, 0.6);
+    dot_actor->SetUseBounds(false);
+    dot_actor->SetVisibility(false);
+    renderer->AddActor(dot_actor);
+}
+
 Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     Parts& p = *parts_;
     p.widget = new QVTKOpenGLNativeWidget(parent);
     p.widget->setRenderWindow(p.window);
     p.window->AddRenderer(p.renderer);
-    p.window->SetMultiSamples(4);
+    p.window->SetMultiSamples(samples);
     p.renderer->SetBackground(1, 1, 1);
     p.renderer->SetBackground2(0.88, 0.91, 0.94);
     p.renderer->GradientBackgroundOn();
     vtkNew<MouseStyle> style;
     p.window->GetInteractor()->SetInteractorStyle(style);
-    p.bar->SetLookupTable(p.colours);
-    p.bar->SetNumberOfLabels(5);
-    p.bar->SetUnconstrainedFontSize(true);
-    p.bar->SetBarRatio(0.25);
-    p.bar->SetVerticalTitleSeparation(10);
-    p.bar->SetWidth(0.11);
-    p.bar->SetHeight(0.62);
-    p.bar->SetPosition(0.875, 0.2);
-    p.bar->SetLabelFormat("%.3g");
-    p.bar->SetMaximumNumberOfColors(256);
-    dress_text(*p.bar->GetTitleTextProperty(), 15);
-    dress_text(*p.bar->GetLabelTextProperty(), 13);
-    p.bar->SetVisibility(false);
-    p.renderer->AddActor2D(p.bar);
-    for (auto* caption :
-         {p.axes->GetXAxisCaptionActor2D(), p.axes->GetYAxisCaptionActor2D(), p.axes->GetZAxisCaptionActor2D()}) {
-        dress_text(*caption->GetCaptionTextProperty(), 14);
-    }
-    p.axes->SetXAxisLabelText("x");
-    p.axes->SetYAxisLabelText("y");
-    p.axes->SetZAxisLabelText("z");
-    p.marker->SetOrientationMarker(p.axes);
-    p.marker->SetInteractor(p.window->GetInteractor());
-    p.marker->SetViewport(0, 0, 0.16, 0.2);
-    p.marker->SetEnabled(1);
-    p.marker->InteractiveOff();
+    p.dress_bar();
+    p.dress_axes();
     p.scene = this;
     p.picker->SetTolerance(0.0005);
     p.picker->PickFromListOn();
@@ -160,15 +190,17 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.rest.setSingleShot(true);
     p.rest.setInterval(200);
     QObject::connect(&p.rest, &QTimer::timeout, [&p] { p.ask_for_whole(); });
-    vtkNew<vtkPolyDataMapper> dot_mapper;
-    dot_mapper->SetInputConnection(p.dot->GetOutputPort());
-    p.dot->SetThetaResolution(16);
-    p.dot->SetPhiResolution(16);
-    p.dot_actor->SetMapper(dot_mapper);
-    p.dot_actor->GetProperty()->SetColor(0.9, 0.1, 0.6);
-    p.dot_actor->SetUseBounds(false);
-    p.dot_actor->SetVisibility(false);
-    p.renderer->AddActor(p.dot_actor);
+    p.dress_dot();
+    // A software renderer draws four samples a pixel in four times the time: while the view is turned one is enough.
+    p.on_hold->SetClientData(&p);
+    p.on_hold->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
+        auto& window = *static_cast<Parts*>(data)->window;
+        if (is_software(window)) {
+            window.SetMultiSamples(event == vtkCommand::StartInteractionEvent ? 0 : samples);
+        }
+    });
+    style->AddObserver(vtkCommand::StartInteractionEvent, p.on_hold);
+    style->AddObserver(vtkCommand::EndInteractionEvent, p.on_hold);
     style->AddObserver(vtkCommand::InteractionEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelForwardEvent, p.on_turn);
     p.window->GetInteractor()->AddObserver(vtkCommand::MouseWheelBackwardEvent, p.on_turn);

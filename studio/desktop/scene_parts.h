@@ -64,7 +64,7 @@ struct Scene::Parts : QObject {
     bool mirrored = false;
     postproc::MirrorPlane mirror;  ///< of the prepared sides
     Scene* scene = nullptr;
-    vtkNew<vtkCallbackCommand> on_turn;
+    vtkNew<vtkCallbackCommand> on_turn, on_hold;
     QTimer hover;
     QPoint pressed;
     std::vector<bool> tinted;
@@ -79,6 +79,9 @@ struct Scene::Parts : QObject {
 
     /// Shows the picture of all faces where it is that of what is seen; else the stand-in, and asks for it at rest.
     void choose_drawn();
+    void dress_bar();
+    void dress_axes();
+    void dress_dot();
     void size_marker();
     void ask_for_whole();
     /// Of the zones that are seen.
