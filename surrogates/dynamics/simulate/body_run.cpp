@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
-#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/motion_step.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
 namespace underbody::dynamics {
@@ -181,9 +181,10 @@ void MeasuredBody::advance(std::size_t k, MotionState& y, ContactState& bearing,
     for (std::size_t s = 0; s < steps; ++s) {
         // the last moment of a step still has the input that is held over it
         const double begin = time()[k] + h * static_cast<double>(s), last = begin + h * (1 - 1e-9);
-        runge_kutta(h, y, [&](double part, const MotionState& at, MotionState& d) {
-            plant_rate(k, part < 1 ? begin + part * h : last, at, bearing, d, loads);
-        });
+        motion_step(h, shape(), body_.vertical().terms, height, rise, y,
+                    [&](double part, const MotionState& at, MotionState& d) {
+                        plant_rate(k, part < 1 ? begin + part * h : last, at, bearing, d, loads);
+                    });
         BodyState there = plant_state(y);
         const std::array<double, 2> gaps = body_.edge_gaps(there);
         const bool down = std::min(gaps[0], gaps[1]) < 0;

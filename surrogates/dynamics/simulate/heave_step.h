@@ -188,15 +188,16 @@ private:
     double history_, contact_gap_, restitution_;
 };
 
-/// The largest rate, 1/s, that film and guide can show over a step: at the lowest gap that it can reach, and at rest
-/// where the velocity may turn.
+/// The largest rate, 1/s, that the film can show over a step: at the lowest gap that it can reach.
+inline double film_rate(const HeaveTerms& terms, double h, double w, double acceleration, double dt) {
+    const double down = std::min({0.0, w, w + dt * acceleration}) * dt;
+    const double gap = std::max({h + down, 0.5 * h, least_film_gap});
+    return terms.film / (gap * gap * gap * terms.mass);
+}
+
+/// The largest rate, 1/s, that film and guide can show over a step: the latter at rest where the velocity may turn.
 inline double fastest_rate(const HeaveTerms& terms, const HeaveState& s, double acceleration, double dt) {
-    double rate = 0;
-    if (terms.film != 0) {
-        const double down = std::min({0.0, s.w, s.w + dt * acceleration}) * dt;
-        const double gap = std::max({s.h + down, 0.5 * s.h, least_film_gap});
-        rate += terms.film / (gap * gap * gap * terms.mass);
-    }
+    double rate = terms.film != 0 ? film_rate(terms, s.h, s.w, acceleration, dt) : 0;
     if (terms.friction != 0) {
         const double reach = std::abs(dt * acceleration) + 3 * terms.friction_width;
         rate += std::abs(s.w) < reach ? terms.friction / (terms.friction_width * terms.mass) : 0;

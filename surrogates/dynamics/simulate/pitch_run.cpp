@@ -5,7 +5,8 @@
 
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"
-#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/motion_step.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 
@@ -121,9 +122,10 @@ void PitchRun::advance(std::size_t k, MotionState& y, ContactState& bearing, con
     for (std::size_t s = 0; s < steps; ++s) {
         // the last moment of a step still has the input that is held over it
         const double begin = time()[k] + h * static_cast<double>(s), last = begin + h * (1 - 1e-9);
-        runge_kutta(h, y, [&](double part, const MotionState& at, MotionState& d) {
-            plant_rate(k, part < 1 ? begin + part * h : last, at, bearing, d, loads);
-        });
+        motion_step(h, shape(), plant_.vertical().terms, 0, 1, y,
+                    [&](double part, const MotionState& at, MotionState& d) {
+                        plant_rate(k, part < 1 ? begin + part * h : last, at, bearing, d, loads);
+                    });
         PitchState there = plant_state(y);
         const std::array<double, 2> gaps = plant_.edge_gaps(there);
         if (std::min(gaps[0], gaps[1]) < 0) {
