@@ -117,7 +117,7 @@ void RegionLoopOptions::check() const {
     }
 }
 
-core::Table commented_map(const dynamics::StabilityRegion& region, const Shell& shell) {
+core::Table commented_map(const dynamics::StabilityRegion& region, Shell& shell) {
     core::Table map = dynamics::region_table(region);
     shell.comment_warnings(map);
     return map;

@@ -25,7 +25,7 @@ struct RegionLoopOptions {
 };
 
 /// One row a start of the map, with the warnings so far as comments.
-core::Table commented_map(const dynamics::StabilityRegion& region, const Shell& shell);
+core::Table commented_map(const dynamics::StabilityRegion& region, Shell& shell);
 
 /// The map of a loop with its estimator; with `draws` the chance that it holds from each start over the sensors' noise.
 /// `options.feedback` is the law.

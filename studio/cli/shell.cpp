@@ -1,5 +1,6 @@
 #include "studio/cli/shell.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
@@ -120,6 +121,7 @@ void Shell::print_json(const nlohmann::json& document) {
         if (!missing.empty()) {
             text = dumped(with_warnings(document, missing), 2);
         }
+        documented();
     }
     if (caller_ != nullptr) {
         caller_->document = std::move(text);
@@ -130,7 +132,8 @@ void Shell::print_json(const nlohmann::json& document) {
 
 void Shell::print(const std::string& text) {
     if (!json) {
-        std::cout << with_flags(text) << (text.ends_with('\n') ? "" : "\n");
+        const std::string lines = with_flags(text) + (text.ends_with('\n') ? "" : "\n");
+        all_or_nothing ? void(text_ += lines) : void(std::cout << lines);
     }
 }
 
@@ -222,35 +225,52 @@ void Shell::will_write(const std::string& path) {
 
 namespace {
 
-/// Whether a person sees both streams: there a warning stands once.
-bool read_by_one() { return ::isatty(STDOUT_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0; }
+/// Whether both streams lead to one place (a terminal, a file, a pipe): who reads it reads a warning once.
+bool read_by_one() {
+    struct stat out {
+    }, errors{};
+    return (::isatty(STDOUT_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0) ||
+           (::fstat(STDOUT_FILENO, &out) == 0 && ::fstat(STDERR_FILENO, &errors) == 0 && out.st_dev == errors.st_dev &&
+            out.st_ino == errors.st_ino);
+}
 
 }  // namespace
 
-void Shell::show(const core::Problems& problems) {
+void Shell::release() {
+    for (const std::string& text : std::exchange(held_back_, {})) {
+        warn(text);
+    }
+}
+
+void Shell::show(const core::Problems& problems, bool told) {
     for (const auto& problem : problems) {
         const std::string text = text_of(problem);
         if (problem.severity == core::Problem::Severity::note) {
             detail(text);
         } else if (said_.insert(text).second) {
             const bool in_text = !json && !list_on_stdout;
-            if (in_text) {
+            if (in_text && !told) {
                 print("warning: " + text);
             }
-            if (!in_text || !read_by_one()) {
+            if (caller_ != nullptr || !read_by_one()) {
                 warn(text);
+            } else if (!in_text || all_or_nothing) {
+                held_back_.push_back(text);
             }
             undocumented_.push_back({text, problem.message});
         }
     }
 }
 
-void Shell::comment_warnings(core::Table& table) const {
+void Shell::comment_warnings(core::Table& table) {
     for (const Warning& one : undocumented_) {
         if (std::none_of(table.comments.begin(), table.comments.end(),
                          [&](const std::string& comment) { return comment.find(one.message) != std::string::npos; })) {
             table.comments.push_back("warning: " + with_flags(one.text));
         }
+    }
+    if (list_on_stdout && !json) {
+        documented();
     }
 }
 
@@ -277,6 +297,8 @@ std::vector<std::string> parted(int argc, const char* const* argv) {
 }  // namespace
 
 void Shell::report(const core::Error& error, const char* what) {
+    text_.clear();
+    release();
     if (caller_ != nullptr) {
         caller_->error = with_flags(error.what());
         const bool usage =
@@ -376,7 +398,12 @@ int Shell::execute(CLI::App& app, int argc, const char* const* argv) {
     if (caller_ != nullptr) {
         return code;
     }
+    if (all_or_nothing && code == done && !json) {
+        std::cout << text_;
+        documented();
+    }
     std::cout.flush();
+    release();
     if (!std::cout && code == done) {
         report(core::SystemError("write", "the output could not be written"), "error");
         return wrong_input;

@@ -47,6 +47,7 @@ public:
     bool verbose = false;
     int threads = 0;
     bool force = false;           ///< files of others are replaced
+    bool all_or_nothing = false;  ///< the text is kept until the command has ended; none of it where by an error
     bool list_on_stdout = false;  ///< a table or names of files, for other programs: no line of ours among them
 
     /// Runs `action` when the sub-command was chosen; its result is the exit code.
@@ -63,12 +64,15 @@ public:
     void detail(const std::string& text);
     /// Problems that change what the numbers mean, each once and where the numbers are read: in the text a line
     /// "warning: ..." on stdout (but where stdout is for other programs: `list_on_stdout`), in the document of --json,
-    /// whose `warnings` get what it does not hold elsewhere; and on stderr, unless both are one terminal. Notes are
-    /// detail.
-    void show(const core::Problems& problems);
+    /// whose `warnings` get what it does not hold elsewhere; and on stderr, unless both streams lead to one place (a
+    /// terminal, 2>&1): there only what no text, document or table took. Notes are detail. `told`: the text of the
+    /// command holds them.
+    void show(const core::Problems& problems, bool told = false);
     void show_warning(const std::string& message) { show({{core::Problem::Severity::warning, message, {}}}); }
     /// The warnings so far as comments of a table that is a result, those that it does not hold.
-    void comment_warnings(core::Table& table) const;
+    void comment_warnings(core::Table& table);
+    /// The result holds the warnings so far.
+    void documented() { held_back_.clear(); }
     /// Refuses, before the work is done, to write over a file that is somebody else's (core/own_files.h). Empty:
     /// nothing.
     static void will_write(const std::string& path);
@@ -100,9 +104,13 @@ private:
     int run_action();
     void report(const core::Error& error, const char* what);
     void say(int level, const std::string& text);
+    /// To stderr: warnings that the result was to hold and does not.
+    void release();
     std::function<int()> action_;
-    std::set<std::string> said_;         ///< warnings, each of which is said once
-    std::vector<Warning> undocumented_;  ///< said, but in no document yet
+    std::set<std::string> said_;          ///< warnings, each of which is said once
+    std::vector<Warning> undocumented_;   ///< said, but in no document yet
+    std::string text_;                    ///< kept while all_or_nothing
+    std::vector<std::string> held_back_;  ///< for the result alone, where a line of stderr would be read beside it
     Caller* caller_ = nullptr;
     core::Progress progress_;
 };

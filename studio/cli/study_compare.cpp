@@ -124,11 +124,6 @@ std::string summary(const cases::StudyComparison& c) {
     text += core::counted(c.cases, "case") + " on both sides";
     text += c.only_a.empty() ? "" : "; only in A " + std::to_string(c.only_a.size()) + ": " + names_text(c.only_a);
     text += c.only_b.empty() ? "" : "; only in B " + std::to_string(c.only_b.size()) + ": " + names_text(c.only_b);
-    if (c.unsettled_a + c.unsettled_b > 0) {
-        text += "\nwarning: of these cases " + std::to_string(c.unsettled_a) + " in A and " +
-                std::to_string(c.unsettled_b) + " in B " + (c.unsettled_a + c.unsettled_b == 1 ? "has" : "have") +
-                " not settled";
-    }
     return text + (c.loads.empty() ? "" : "\nloads (B less A): " + counts_of(c)) + "\n";
 }
 
@@ -213,6 +208,11 @@ int compare_campaigns(Shell& shell, const StudyArguments& arguments) {
             json[key] = results->changed;
         }
         shell.print_json(json);
+    }
+    if (const std::size_t unsettled = compared.unsettled_a + compared.unsettled_b; unsettled > 0 && !shell.json) {
+        shell.show_warning("of these cases " + std::to_string(compared.unsettled_a) + " in A and " +
+                           std::to_string(compared.unsettled_b) + " in B " + (unsettled == 1 ? "has" : "have") +
+                           " not settled");
     }
     shell.print(text_of(compared, arguments.most));
     return results_a.failed + results_b.failed == 0 ? done : wrong_input;

@@ -298,6 +298,9 @@ private:
             events_.push_back(std::move(event));
         } else if (shell_.json) {
             std::cout << event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+            if (event.contains("warnings")) {
+                shell_.documented();
+            }
         } else {
             shell_.print(text);
             std::cout.flush();

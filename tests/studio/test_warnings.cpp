@@ -109,6 +109,32 @@ TEST_F(Warnings, StandOnceWithTheResultOfEveryCommand) {
     expect_once({"study", "list", "study"}, no_shear);
 }
 
+TEST_F(Warnings, StandOnceWhereOneReaderHasBothStreams) {
+    write_files();
+    core::write_file(folder.path() / "cube2.csv", field_without_shear(0.004, 90));
+    const std::string program = (program_folder() / "underbody").string();
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
+    const std::string no_shear = "zone 'base' has no wall shear vector: its viscous part is left out";
+    const auto once = [&](const std::string& words, const std::string& sentence) {
+        SCOPED_TRACE(words);
+        const auto pipe = run_program("/bin/sh", {"-c", program + " " + words + " 2>&1"}, folder.path());
+        EXPECT_EQ(times_in(pipe.output, sentence), 1U) << pipe.output;
+        (void)run_program("/bin/sh", {"-c", program + " " + words + " > both.txt 2>&1"}, folder.path());
+        EXPECT_EQ(times_in(core::read_file(folder.path() / "both.txt"), sentence), 1U);
+        const std::string apart = " > out.txt 2> errors.txt";
+        (void)run_program("/bin/sh", {"-c", program + " " + words + apart}, folder.path());
+        EXPECT_EQ(times_in(core::read_file(folder.path() / "errors.txt"), sentence), 1U);
+        return pipe.output;
+    };
+    once("table at lift.csv gap=6mm", unsettled);
+    once("export lift.csv --format csv --out once.csv", unsettled);
+    once("loads cube.csv cube2.csv", no_shear);
+    once("table equilibria lift.csv --weight 0.8N --picture no/folder.png", unsettled);  // ends by an error
+    const std::string document = once("table at lift.csv gap=6mm --json", unsettled);
+    EXPECT_NO_THROW((void)json::parse(document)) << document;
+    once("table equilibria lift.csv --json --weight 0.8N --picture no/folder.png", unsettled);
+}
+
 TEST_F(Warnings, StandInBothStreamsOfAScriptAndOnceOnATerminal) {
     write_files();
     const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
