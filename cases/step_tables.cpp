@@ -69,10 +69,11 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
     bool says_exact = false;
     for (const auto& remark : table.remarks()) {
         document["remarks"].push_back(remark.message);
-        says_exact = says_exact || remark.message.find("taken as exact") != std::string::npos;
+        says_exact = says_exact || tables::says_exact(remark.message);
     }
-    if (const std::string exact = tables::exact_points(table); !exact.empty() && !says_exact) {
-        document["remarks"].push_back(exact);
+    if (const std::string text = tables::unstated_errors(table);
+        !text.empty() && !(says_exact && tables::says_exact(text))) {
+        document["remarks"].push_back(text);
     }
     document["axes"] = nlohmann::json::array();
     for (const auto& axis : table.axes()) {

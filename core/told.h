@@ -6,11 +6,15 @@
 
 namespace underbody::core {
 
-/// The unit in which people are told what is in the SI unit `si`: "mm" for m, "deg" for rad, every other as it is.
+/// The unit in which people are told what is in the SI unit `si`: "mm" for m, "deg" for rad, "N/deg" for a force's
+/// slope over an angle, every other as it is.
 std::string_view told_unit(std::string_view si);
 
 /// "5 mm", "-2 deg", "0.4 m/s"; of a pure number (unit "1" or "") the number alone. `value` is in the SI unit `si`.
 std::string told(double value, std::string_view si, int digits = 6);
+
+/// "5.25 +- 0.1 mm"
+std::string told(double value, double sigma, std::string_view si, int digits);
 
 /// The unit in which the quantity of this name (core::find_quantity) is told, of whatever else that of its SI unit
 /// `si`: a depth in m, other lengths in mm.

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/table.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "geometry/body/body_figures.h"
 #include "geometry/mesh/mesh_file.h"
@@ -156,7 +157,7 @@ std::string facet_error(const geometry::Body& body) {
 void print_trim(const geometry::Trim& t, Shell& shell) {
     shell.print("trim        mass " + rounded(t.mass, 5) + " kg, net weight " + rounded(t.net_weight, 4) + " N, " +
                 (t.stable ? "pitch " + degrees(t.pitch) + " deg, roll " + degrees(t.roll) + " deg, righting " +
-                                rounded(t.righting_stiffness, 4) + " N m/rad"
+                                core::told(t.righting_stiffness, "N m/rad", 4)
                  : t.neutral ? std::string("neutral: the centre of gravity is the centre of buoyancy, it stays as "
                                            "it is turned")
                              : std::string("not stable: the centre of gravity lies above the centre of buoyancy")));

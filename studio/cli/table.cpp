@@ -8,6 +8,7 @@
 #include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/option_value.h"
@@ -46,12 +47,19 @@ int run_fit(Shell& shell, const FitCommand& command) {
                     shown(table, axis.name, axis.unit, axis.upper) + ", " +
                     core::counted(axis.points.size(), "set point");
         }
+        if (!shell.json) {
+            core::Problems warnings = table.remarks();
+            std::erase_if(warnings,
+                          [](const core::Problem& remark) { return remark.severity == core::Problem::Severity::note; });
+            shell.show(warnings, true);
+        }
         for (const auto& remark : table.remarks()) {
             text += (remark.severity == core::Problem::Severity::note ? "\n  " : "\n  warning: ") + remark.message;
         }
-        if (const std::string exact = tables::exact_points(table);
-            !exact.empty() && command.table.fit_options().kind != tables::FitOptions::Kind::automatic) {
-            text += "\n  " + exact;  // what chooses the fit says so itself
+        if (const std::string unstated = tables::unstated_errors(table);
+            !unstated.empty() && (!tables::says_exact(unstated) ||
+                                  command.table.fit_options().kind != tables::FitOptions::Kind::automatic)) {
+            text += "\n  " + unstated;  // that they are exact what chooses the fit says itself
         }
         shell.print(text);
         document["tables"].push_back(entry);
@@ -102,8 +110,8 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
     }
     for (std::size_t k = 0; k < point.size(); ++k) {
         const auto& axis = table.axes()[k];
-        line += (k == 0 ? "   slope " : ", ") + core::format_number(e.slope[k], 6) + " " +
-                tables::unit_per(table.unit(), axis.unit) + " along " + axis.name;
+        const std::string unit = tables::unit_per(table.unit(), axis.unit);
+        line += (k == 0 ? "   slope " : ", ") + core::told(e.slope[k], unit) + " along " + axis.name;
     }
     if (e.outside) {
         line += "   outside the table";
@@ -120,10 +128,15 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
               {}}});
     }
     shell.print(line);
-    return tables::to_json(table, point, e);
+    nlohmann::json json = tables::to_json(table, point, e);
+    for (const auto& axis : table.axes()) {
+        json["slope_unit"][axis.name] = tables::unit_per(table.unit(), axis.unit);
+    }
+    return json;
 }
 
 int run_at(Shell& shell, const AtCommand& command) {
+    shell.all_or_nothing = true;  // no number before an error of a later point
     nlohmann::json document;
     document["values"] = nlohmann::json::array();
     std::set<std::string> said;  // of a point once, not for every force

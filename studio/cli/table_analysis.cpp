@@ -10,6 +10,7 @@
 #include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
@@ -124,9 +125,10 @@ void show_windows(Shell& shell, const std::vector<tables::PitchWindow>& windows)
                    (sigma > 1e-9 ? " +- " + five_digits(core::convert(sigma, "rad", "deg"), 2) : "");
         };
         shell.print(w.side + ": restores from " + edge(w.lower, w.lower_sigma) + " to " + edge(w.upper, w.upper_sigma) +
-                    " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" + five_digits(w.stiffness, 4) +
-                    " N m/rad); trim torque there " + five_digits(w.trim_torque, 4) + " N m nose up, " +
-                    five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) + " N m over the window");
+                    " deg, stiffest at " + angle_in_degrees(w.best_pitch) + " deg (" +
+                    core::told(w.stiffness, "N m/rad", 4) + "); trim torque there " + five_digits(w.trim_torque, 4) +
+                    " N m nose up, " + five_digits(w.trim_lower, 4) + " to " + five_digits(w.trim_upper, 4) +
+                    " N m over the window");
     }
     if (windows.empty()) {
         shell.print("the pitch moment restores nowhere in the table");
@@ -236,10 +238,9 @@ void show_comparison(Shell& shell, const tables::ForceTable& table, const tables
     const bool restoring = c.measure.find("restoring") != std::string::npos;
     for (std::size_t i = 0; i < c.names.size(); ++i) {
         shell.print(c.names[i] + ": " +
-                    (restoring && !(c.values[i] > 0)
-                         ? "restores nowhere"
-                         : c.measure + " of the " + tables::noun_of(c.quantity) + " " + five_digits(c.values[i]) +
-                               " +- " + five_digits(c.errors[i], 2) + " " + c.unit));
+                    (restoring && !(c.values[i] > 0) ? "restores nowhere"
+                                                     : c.measure + " of the " + tables::noun_of(c.quantity) + " " +
+                                                           core::told(c.values[i], c.errors[i], c.unit, 5)));
     }
     const std::string unit = table.axes()[tables::axis_index(table, c.axis)].unit;
     const std::string range = "compared over the " + c.axis + " that all have, " +

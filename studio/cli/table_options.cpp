@@ -66,9 +66,13 @@ namespace {
 std::vector<std::string> names_of(const std::string& list) {
     std::vector<std::string> names;
     for (const auto name : core::split(list, ',')) {
-        if (!core::trimmed(name).empty()) {
-            names.emplace_back(core::trimmed(name));
+        if (core::trimmed(name).empty()) {
+            continue;
         }
+        if (std::find(names.begin(), names.end(), core::trimmed(name)) != names.end()) {
+            throw core::UsageError("parse", "'" + std::string(core::trimmed(name)) + "' is named twice: " + list);
+        }
+        names.emplace_back(core::trimmed(name));
     }
     return names;
 }
@@ -227,9 +231,8 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
     std::string text;
     for (const dynamics::HeldChannel& one_held : held_) {
         held[one_held.channel] = one_held.value;
-        text += (text.empty() ? "the model's forces at " : ", ") + std::string(channel_name(one_held.channel)) + " " +
-                core::format_number(one_held.value, 6) + " " + channel_unit(one_held.channel) + " (" + one_held.from +
-                ")";
+        text += (text.empty() ? "the model's forces at " : ", ") +
+                core::told_condition(channel_name(one_held.channel), one_held.value) + " (" + one_held.from + ")";
     }
     warnings_ = dynamics::held_outside(model, held);
     keep(dynamics::held_in_vain(model, held_of(where)), warnings_);
@@ -259,6 +262,7 @@ void TableOptions::describe(nlohmann::json& document) const {
     }
     if (!is_model()) {
         document["points_exact"] = exact_;
+        document["points_scatter"] = scatter_ > 0 ? nlohmann::json(scatter_) : nlohmann::json(nullptr);
     }
     document["warnings"] = nlohmann::json::array();
     for (const core::Problem& problem : warnings_) {
@@ -266,9 +270,10 @@ void TableOptions::describe(nlohmann::json& document) const {
     }
 }
 
-void TableOptions::say_exact(Shell& shell, const tables::ForceTable& table) const {
-    if (const std::string text = tables::exact_points(table); !text.empty()) {
-        exact_ = true;
+void TableOptions::say_unstated(Shell& shell, const tables::ForceTable& table) const {
+    scatter_ = std::max(scatter_, table.point_scatter());
+    if (const std::string text = tables::unstated_errors(table); !text.empty()) {
+        exact_ = exact_ || tables::says_exact(text);
         print_held ? shell.print(text) : shell.info(text);
     }
 }
@@ -276,7 +281,7 @@ void TableOptions::say_exact(Shell& shell, const tables::ForceTable& table) cons
 tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     if (const auto* known = fitted(shell)) {  // its remarks were said when it was fitted
         keep(known->front().remarks(), warnings_);
-        say_exact(shell, known->front());
+        say_unstated(shell, known->front());
         return known->front();
     }
     if (is_model()) {
@@ -285,7 +290,7 @@ tables::ForceTable TableOptions::fit(Shell& shell, tables::Held* asked) const {
     const auto table = points(shell);
     auto fitted = tables::ForceTable::fit(table, quantities_of(table, quantity).front(), fit_options());
     tell(shell, fitted.remarks(), warnings_);
-    say_exact(shell, fitted);
+    say_unstated(shell, fitted);
     return fitted;
 }
 
@@ -294,7 +299,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
         for (const auto& table : *known) {
             if (remarks) {
                 keep(table.remarks(), warnings_);
-                say_exact(shell, table);
+                say_unstated(shell, table);
             }
         }
         return *known;
@@ -308,7 +313,7 @@ std::vector<tables::ForceTable> TableOptions::fit_all(Shell& shell, bool remarks
         all.push_back(tables::ForceTable::fit(table, name, fit_options()));
         if (remarks) {
             tell(shell, all.back().remarks(), warnings_);
-            say_exact(shell, all.back());
+            say_unstated(shell, all.back());
         }
     }
     return all;

@@ -44,8 +44,8 @@ struct TableOptions {
     [[nodiscard]] std::vector<tables::ForceTable> fit_all(Shell& shell, bool remarks = true,
                                                           tables::Held* asked = nullptr) const;
     /// Adds `held` (what the forces of a model are taken at beside their axes, and whence) and `warnings` to the JSON
-    /// of a command; of a table its `warnings`, and `points_exact`: whether its points state no errors and are taken as
-    /// exact.
+    /// of a command; of a table its `warnings`, `points_exact`: whether its points state no errors and are taken as
+    /// exact, and `points_scatter`: what is taken as their error where they state none.
     void describe(nlohmann::json& document) const;
 
 private:
@@ -56,10 +56,11 @@ private:
                                                            tables::Held* asked) const;
     mutable std::vector<dynamics::HeldChannel> held_;  ///< of the model last taken
     mutable core::Problems warnings_;
-    /// Says, beside the numbers, that points are taken as exact.
-    void say_exact(Shell& shell, const tables::ForceTable& table) const;
+    /// Says, beside the numbers, what is taken for errors that points do not state.
+    void say_unstated(Shell& shell, const tables::ForceTable& table) const;
     mutable std::string said_;    ///< about what is held, once
     mutable bool exact_ = false;  ///< points of a table that was fitted state no errors
+    mutable double scatter_ = 0;  ///< the largest that is taken as the error of such points
 };
 
 /// A value in the unit that the user's file has for the quantity.

@@ -207,6 +207,9 @@ TEST(Told, LengthsInMillimetresAnglesInDegreesAllElseAsItIs) {
     EXPECT_EQ(told_condition("wheels", 3), "wheels 3");
     EXPECT_EQ(told_unit_of("depth", "m"), "m");
     EXPECT_EQ(told_unit_of("roll", "rad"), "deg");
+    EXPECT_EQ(told(180 / std::numbers::pi, "N m/rad"), "1 N m/deg");
+    EXPECT_EQ(told(0.00525, 0.0001, "m", 4), "5.25 +- 0.1 mm");
+    EXPECT_EQ(told(2, 0.5, "1", 4), "2 +- 0.5");
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "tests/support/support.h"
 
 namespace underbody {
@@ -241,6 +243,79 @@ TEST(TableCommand, BalancesHeaveAndPitchAtAHeldSpeedWithTrimAndMasses) {
     EXPECT_THAT(pitch({"--weight", "4"}).errors, HasSubstr("'speed' whose value is not given"));
     EXPECT_EQ(pitch({"--held", "speed=2", "--weight", "4", "--mass", "2"}).exit_code, 2);
     EXPECT_EQ(pitch({"--held", "speed=2,gap=0.5", "--trim", "1"}).exit_code, 2);
+}
+
+/// Points that scatter and state no errors: what is taken as theirs stands wherever the error is read.
+TEST(TableCommand, ScatterThatIsTakenAsTheErrorOfPointsIsSaidWhereAnErrorIsRead) {
+    core::TemporaryFolder folder;
+    std::string scattered = "gap [mm], pitch [deg], lift_force [N]\n";
+    for (int i = 0; i < 25; ++i) {
+        const double gap = 3 + std::fmod(7.3 * i, 11), pitch = -2 + std::fmod(1.7 * i, 4),
+                     off = 0.02 * std::sin(12.9898 * i * i);
+        scattered += core::format_number(gap, 5) + ", " + core::format_number(pitch, 4) + ", " +
+                     core::format_number(0.9 * std::exp(-gap / 8) + 0.05 * pitch + off, 5) + "\n";
+    }
+    core::write_file(folder.path() / "scattered.csv", scattered);
+    const std::string said = "points of lift_force state no errors: what they scatter by about the fit, about 0.01";
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"table", "fit", "scattered.csv"},
+          {"table", "at", "scattered.csv", "gap=7mm,pitch=0.5deg"},
+          {"table", "equilibria", "scattered.csv", "--weight", "0.3", "--held", "pitch=0"}}) {
+        EXPECT_THAT(run_underbody(command, folder.path()).output, HasSubstr(said)) << command[1];
+    }
+    const auto json = nlohmann::json::parse(
+        run_underbody({"table", "at", "scattered.csv", "gap=7mm,pitch=0.5deg", "--json"}, folder.path()).output);
+    EXPECT_EQ(json["points_exact"], false);
+    EXPECT_NEAR(json["points_scatter"].get<double>(), 0.015, 0.005);
+    for (const char* format : {"lift.h", "lift.csv", "lift.json"}) {
+        ASSERT_EQ(run_underbody({"export", "scattered.csv", "--out", format, "--force"}, folder.path()).exit_code, 0);
+        EXPECT_THAT(core::read_file(folder.path() / format), HasSubstr(said)) << format;
+    }
+    EXPECT_THAT(run_underbody({"table", "at", "lift.csv", "gap=7mm,pitch=0.5deg"}, folder.path()).output,
+                HasSubstr(said))
+        << "an exported table";
+}
+
+/// Texts tell angles in degrees, slopes over them too; the JSON is SI and says so.
+TEST(TableCommand, SlopesOverAnglesArePerDegreeInTheText) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "m.csv",
+                     "pitch [deg], pitch_moment [N m]\n-2, 0.004\n-1, 0.002\n0, 0\n1, -0.002\n2, -0.004\n");
+    const auto text = run_underbody({"table", "at", "m.csv", "pitch=0.5deg"}, folder.path());
+    EXPECT_THAT(text.output, HasSubstr("slope -0.002 N m/deg along pitch")) << text.errors;
+    const auto json =
+        nlohmann::json::parse(run_underbody({"table", "at", "m.csv", "pitch=0.5deg", "--json"}, folder.path()).output);
+    EXPECT_NEAR(json["slope"]["pitch"].get<double>(), -0.002 * 180 / M_PI, 1e-6);
+    EXPECT_EQ(json["slope_unit"]["pitch"], "N m/rad");
+}
+
+/// A blank in place of a comma: no number before the error about the second point.
+TEST(TableCommand, NothingIsPrintedBeforeAnErrorOfALaterPoint) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv", lift);
+    const auto run = run_underbody({"table", "at", "lift.csv", "gap=4mm", "pitch=1deg"}, folder.path());
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.output, "");
+    EXPECT_THAT(run.errors, HasSubstr("the table has no axis 'pitch'"));
+    const auto both = run_underbody({"table", "at", "lift.csv", "gap=4mm", "gap=5mm"}, folder.path());
+    EXPECT_EQ(both.exit_code, 0);
+    EXPECT_EQ(std::count(both.output.begin(), both.output.end(), '\n'), 2);
+}
+
+TEST(TableCommand, GapsBelowZeroAreToldWithTheirPlace) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv",
+                     "gap [mm], lift_force [N]\n-1, 0.9\n2, 0.8\n4, 0.6\n6, 0.5\n8, 0.45\n");
+    const std::string said = "1 of 5 points is at a gap below 0, -1 mm";
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"table", "fit", "lift.csv"},
+                                                    {"table", "at", "lift.csv", "gap=3mm"},
+                                                    {"table", "equilibria", "lift.csv", "--weight", "0.6"}}) {
+        EXPECT_THAT(run_underbody(command, folder.path()).output, HasSubstr(said)) << command[1];
+    }
+    const auto made = run_underbody({"export", "lift.csv", "--out", "lift.h"}, folder.path());
+    EXPECT_THAT(made.errors, HasSubstr("lift.csv:2"));
+    EXPECT_THAT(made.errors, HasSubstr(said));
+    EXPECT_THAT(core::read_file(folder.path() / "lift.h"), HasSubstr(said));
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
         for (auto&& line : settled_lines(tables[i].points())) {
             said.push_back(std::move(line));
         }
-        if (std::string line = exact_points(tables[i]); !line.empty()) {
+        if (std::string line = unstated_errors(tables[i]); !line.empty()) {
             line[0] = 'T';
             if (std::find(said.begin(), said.end(), line) == said.end()) {  // an exported table says it already
                 said.push_back(std::move(line));

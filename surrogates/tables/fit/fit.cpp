@@ -101,12 +101,12 @@ public:
     [[nodiscard]] std::shared_ptr<ForceTable::Impl> interpolation() const {
         SetPoints points = followed_;
         const std::size_t n = points.x.size();
+        double mean = 0;
         if (!points.has_sigma() && n >= 8 && n >= points.axes.size() + 6 && n <= 60) {
             const Scatter scatter = scatter_of(smoothed_, suspects_.candidates);
             points.scatter = scatter.sigma;
+            mean = std::accumulate(scatter.sigma.begin(), scatter.sigma.end(), 0.0) / static_cast<double>(n);
             if (scatter.plain) {
-                const double mean =
-                    std::accumulate(scatter.sigma.begin(), scatter.sigma.end(), 0.0) / static_cast<double>(n);
                 points.remarks.push_back({core::Problem::Severity::warning,
                                           "the points state no errors but scatter by about " +
                                               core::format_number(mean, 2) + " " + points.unit +
@@ -116,7 +116,9 @@ public:
                                           {points.table.source, {}, {}, {}}});
             }
         }
-        return fit_interpolation(points, options_);
+        auto table = fit_interpolation(points, options_);
+        table->point_scatter = mean;
+        return table;
     }
     /// Leave-one-out misses of interpolation; NaN where none is known, and at suspect points.
     [[nodiscard]] std::vector<double> misses() const {
@@ -137,8 +139,10 @@ private:
 std::shared_ptr<const ForceTable::Impl> better_of(const SetPoints& points, const Fits& fits) {
     auto interpolated = fits.interpolation();
     if (!points.has_sigma()) {
-        return with_remark(interpolated,
-                           "interpolated: the points fill a grid and state no errors, so they are taken as exact");
+        return with_remark(interpolated, std::string("interpolated: the points fill a grid and state no errors, ") +
+                                             (interpolated->point_scatter > 0
+                                                  ? "the table goes through them, their scatter is taken as their error"
+                                                  : "so they are taken as exact"));
     }
     if (points.x.size() < points.axes.size() + 3) {
         return with_remark(interpolated, "interpolated: too few points to judge by leaving one out");

@@ -365,6 +365,10 @@ std::shared_ptr<ForceTable::Impl> fit_gaussian_process(const SetPoints& all_poin
     table->rule = SlopeRule::not_a_knot;
     remarks.push_back({core::Problem::Severity::note, described(*mixture, points), {points.table.source, {}, {}, {}}});
     table->remarks = std::move(remarks);
+    if (!points.has_sigma()) {
+        const ProcessPart& best = mixture->parts.front();
+        table->point_scatter = best.process.parameters().scatter * best.form.size;
+    }
     mixture->choose_grid(points);
     auto hermite = mixture->tabulate();
     table->error = ErrorModel(mixture->grid, mixture->sigma);

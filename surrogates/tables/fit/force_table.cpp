@@ -39,6 +39,7 @@ const std::vector<TableAxis>& ForceTable::axes() const { return impl_->axes; }
 const std::string& ForceTable::kind() const { return impl_->kind; }
 const std::string& ForceTable::source() const { return impl_->source; }
 double ForceTable::sampling_error() const { return impl_->sampling_error; }
+double ForceTable::point_scatter() const { return impl_->point_scatter; }
 const core::Problems& ForceTable::remarks() const { return impl_->remarks; }
 const core::Table& ForceTable::points() const { return impl_->points; }
 const std::vector<double>& ForceTable::knots(std::size_t axis) const { return impl_->surface.axis(axis).points(); }

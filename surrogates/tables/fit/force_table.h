@@ -96,6 +96,9 @@ public:
     /// Of a table that stands for a function known elsewhere (the forces of a model): its largest difference from that
     /// function, in unit(). 0 for others.
     [[nodiscard]] double sampling_error() const;
+    /// Of points that state no errors: what they scatter by about the fit, on average, in unit(), where that is taken
+    /// as their error. 0 where none is.
+    [[nodiscard]] double point_scatter() const;
 
     /// Another table whose values are drawn from this one's error (correlated along the axes), for probability maps.
     [[nodiscard]] ForceTable drawn(std::uint64_t seed) const;

@@ -35,6 +35,7 @@ struct ForceTable::Impl {
         support;  ///< where there is data, when it is not the hull that says so; null for others
 
     double sampling_error = 0;
+    double point_scatter = 0;  ///< of points that state no errors: taken as their error, a mean; 0: none is
 
     /// Null: everywhere within the axes.
     [[nodiscard]] const Support* data_support() const;

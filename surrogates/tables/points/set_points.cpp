@@ -408,6 +408,29 @@ void check_policies(const RangePolicies& policies, const std::vector<std::string
     }
 }
 
+/// No body is below the ground; a gap that counts from elsewhere than the base is, and a sign turned.
+void doubt_negative_gaps(SetPoints& points) {
+    const core::Column* gap = points.table.find("gap");
+    if (gap == nullptr || gap->is_text()) {
+        return;
+    }
+    std::size_t below = 0, first = 0;
+    for (std::size_t i = gap->numbers.size(); i-- > 0;) {
+        if (gap->numbers[i] < 0) {
+            ++below;
+            first = i;
+        }
+    }
+    if (below > 0) {
+        points.remarks.push_back(warning(
+            core::counted_of(below, points.table.rows(), "point", "is", "are") + " at a gap below 0" +
+                (below > 1 ? ", the first at " : ", ") + in_written_unit(points.table, "gap", gap->numbers[first]) +
+                ": there the base is below the ground; a sign that is turned, or a gap that is not that of the "
+                "base?",
+            points.table.place(first, "gap")));
+    }
+}
+
 /// Axes and coordinates of the points.
 void take_axes(SetPoints& points, const std::vector<std::string>& names, const AxisOptions& options) {
     points.x.assign(points.table.rows(), std::vector<double>(names.size()));
@@ -452,6 +475,7 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
     for (auto& unsettled : unsettled_points(points.table)) {
         points.remarks.push_back(std::move(unsettled));
     }
+    doubt_negative_gaps(points);
     take_axes(points, names, options);
     points.value = points.table.numbers(quantity);
     read_sigma(points);
