@@ -55,7 +55,65 @@ std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const core::Table& 
             plan[i].at.push_back(values[i]);
         }
     }
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (plan[i].name == plan[j].name && (plan[i].fidelity == plan[j].fidelity || plan[i].at != plan[j].at)) {
+                throw core::InputError("duplicate", "the design " + plan[i].name + " stands twice",
+                                       table.place(i, "design"), "a name of its own for each");
+            }
+        }
+    }
     return plan;
+}
+
+/// At the same place, equal but for the rounding of a file.
+bool same_place(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (std::abs(a.at[v] - b.at[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The same case.
+bool is_same(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
+    return a.design == b.design && a.fidelity == b.fidelity && same_place(variables, a, b);
+}
+
+/// A run that stands twice counts once: of rows of one design the last that has loads, as where it is computed again;
+/// of rows under two names, or none, those whose loads are equal to the last digit.
+void find_repeated(const DesignSpec& spec, const core::Table& table, std::vector<DesignRun>& runs,
+                   core::Problems& notes) {
+    const auto variables = spec.all_variables();
+    const bool named = table.find("design") != nullptr;
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            DesignRun &first = runs[j], &later = runs[i];
+            if (first.repeated || later.repeated || !same_place(variables, first, later) ||
+                first.fidelity != later.fidelity) {
+                continue;
+            }
+            const bool copy = !first.loads.empty() && first.loads == later.loads;
+            if (!copy && !(named && first.design == later.design)) {
+                continue;
+            }
+            const bool first_counts = copy || (later.loads.empty() && !first.loads.empty());
+            (first_counts ? later : first).repeated = true;
+            if (first.loads.empty() && later.loads.empty()) {
+                continue;  // failed twice
+            }
+            const bool differ = !first.loads.empty() && !later.loads.empty();
+            notes.push_back({core::Problem::Severity::warning,
+                             "rows " + std::to_string(j + 1) + " and " + std::to_string(i + 1) +
+                                 " are of the same case (" + first.design +
+                                 (later.design == first.design ? "" : ", " + later.design) + "): " +
+                                 (copy ? "it counts once"
+                                       : "the " + std::string(first_counts ? "first" : "last") + " counts, " +
+                                             (differ ? "their loads differ" : "the other has no loads")),
+                             table.place(first_counts ? i : j, variables.front().name)});
+        }
+    }
 }
 
 std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
@@ -102,20 +160,8 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
             }
         }
     }
+    find_repeated(spec, table, runs, notes);
     return runs;
-}
-
-/// The same case: equal but for the rounding of a file.
-bool is_same(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
-    if (a.design != b.design || a.fidelity != b.fidelity) {
-        return false;
-    }
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        if (std::abs(a.at[v] - b.at[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
-            return false;
-        }
-    }
-    return true;
 }
 
 }  // namespace
@@ -153,7 +199,7 @@ Design Design::open(const Study& study) {
     design.note_unknown_sigmas();
     std::size_t unsettled = 0;
     for (const DesignRun& run : design.runs_) {
-        unsettled += run.state == not_settled_state ? 1 : 0;
+        unsettled += run.state == not_settled_state && !run.repeated ? 1 : 0;
     }
     if (unsettled > 0) {
         design.notes.push_back(
@@ -236,8 +282,9 @@ bool Design::write_shapes() {
 
 DesignRun* Design::find(const DesignRun& run) {
     const auto variables = spec_.all_variables();
-    const auto same = std::find_if(runs_.begin(), runs_.end(),
-                                   [&](const DesignRun& known) { return is_same(variables, known, run); });
+    const auto same = std::find_if(runs_.begin(), runs_.end(), [&](const DesignRun& known) {
+        return !known.repeated && is_same(variables, known, run);
+    });
     return same == runs_.end() ? nullptr : &*same;
 }
 

@@ -41,7 +41,8 @@ struct DesignRun {
     std::string fidelity;
     std::map<std::string, double> loads, sigmas;  ///< SI; by quantity; a sigma that nobody states is not there
     std::string state;                            ///< "solved", "not settled", or what failed
-    [[nodiscard]] bool usable() const { return state == "solved"; }
+    bool repeated = false;                        ///< another row is of the same case, and counts
+    [[nodiscard]] bool usable() const { return state == "solved" && !repeated; }
 };
 
 class Design {

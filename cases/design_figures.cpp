@@ -7,6 +7,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "geometry/body/body_figures.h"
 #include "geometry/body/body_surface.h"
@@ -137,6 +138,18 @@ Figure one_at_a_time_figure(const Surrogate& surrogate, const std::vector<double
     return figure;
 }
 
+namespace {
+
+/// The unit in which people are told of a response, and how many of it make one of its SI unit.
+struct ToldResponse {
+    ToldResponse(const tables::DesignSearch& search, const tables::Response& response)
+        : unit(core::told_unit(search.unit_of(response))), factor(core::convert(1, search.unit_of(response), unit)) {}
+    std::string unit;
+    double factor = 1;
+};
+
+}  // namespace
+
 Figure convergence_figure(const Design& design, const tables::DesignSearch& search) {
     const auto& objective = search.problem().objectives.front();
     Figure figure;
@@ -145,7 +158,8 @@ Figure convergence_figure(const Design& design, const tables::DesignSearch& sear
         "The first objective as the surrogate gives it for each design that was run, and the best of those "
         "that meet the limits.";
     figure.x = {"design", ""};
-    figure.y = {spaced(objective.response.name), search.unit_of(objective.response)};
+    const ToldResponse told(search, objective.response);
+    figure.y = {spaced(objective.response.name), told.unit};
     core::FigurePoints points;
     points.name = "designs";
     points.colour = core::palette(0);
@@ -165,9 +179,9 @@ Figure convergence_figure(const Design& design, const tables::DesignSearch& sear
         until.push_back(d.at);
         const auto value = search.evaluate(objective.response, d.at);
         points.x.push_back(static_cast<double>(number));
-        points.y.push_back(value.value);
-        points.y_error.push_back(value.sigma);
-        const double so_far = search.best_of(until);
+        points.y.push_back(told.factor * value.value);
+        points.y_error.push_back(told.factor * value.sigma);
+        const double so_far = told.factor * search.best_of(until);
         if (!std::isnan(so_far)) {
             best.x.push_back(static_cast<double>(number));
             best.y.push_back(objective.sense == tables::Objective::Sense::maximise ? -so_far : so_far);
@@ -183,13 +197,14 @@ Figure convergence_figure(const Design& design, const tables::DesignSearch& sear
 namespace {
 
 /// Outlines in the plane of symmetry, m, of the designs among `front` that leave each other room in a picture of
-/// `width` by `height`; each is a twelfth of the picture long.
-void draw_bodies(Figure& figure, const Design& design, const std::vector<Candidate>& front, core::Progress& progress) {
+/// `width` by `height`; each is a twelfth of the picture long. `per_x` and `per_y`: the axes' units over SI.
+void draw_bodies(Figure& figure, const Design& design, const std::vector<Candidate>& front, double per_x, double per_y,
+                 core::Progress& progress) {
     constexpr double length = 1 / 12.0, aspect = 1.86;  // of a picture's box, width over height
     const double width = figure.x.upper - figure.x.lower, height = figure.y.upper - figure.y.lower;
     std::vector<std::pair<double, double>> drawn;
     for (const Candidate& c : front) {
-        const double x = c.objectives[0].value, y = c.objectives[1].value;
+        const double x = per_x * c.objectives[0].value, y = per_y * c.objectives[1].value;
         const bool covered = std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) {
             return std::abs(other.first - x) < 1.1 * length * width &&
                    std::abs(other.second - y) < 0.9 * length * aspect * height;
@@ -244,18 +259,19 @@ Figure front_figure(const Design& design, const tables::DesignSearch& search, co
     figure.caption +=
         ", by the surrogates; bars are one standard deviation. Outlines: sections of bodies at their "
         "points, nose to the right, where there is room.";
-    figure.x = {spaced(objectives[0].response.name), search.unit_of(objectives[0].response)};
-    figure.y = {spaced(objectives[1].response.name), search.unit_of(objectives[1].response)};
+    const ToldResponse first(search, objectives[0].response), second(search, objectives[1].response);
+    figure.x = {spaced(objectives[0].response.name), first.unit};
+    figure.y = {spaced(objectives[1].response.name), second.unit};
     const auto add = [&](const std::vector<Candidate>& designs, const std::string& name, core::Colour colour,
                          bool bars) {
         core::FigurePoints points;
         points.name = name;
         points.colour = colour;
         for (const Candidate& c : designs) {
-            points.x.push_back(c.objectives[0].value);
-            points.y.push_back(c.objectives[1].value);
+            points.x.push_back(first.factor * c.objectives[0].value);
+            points.y.push_back(second.factor * c.objectives[1].value);
             if (bars) {
-                points.y_error.push_back(c.objectives[1].sigma);
+                points.y_error.push_back(second.factor * c.objectives[1].sigma);
             }
         }
         figure.points.push_back(points);
@@ -264,7 +280,7 @@ Figure front_figure(const Design& design, const tables::DesignSearch& search, co
     add(front, "front", core::palette(1), true);
     fit_axis(figure.x, figure.points, &core::FigurePoints::x, false);
     fit_axis(figure.y, figure.points, &core::FigurePoints::y, true);
-    draw_bodies(figure, design, front, progress);
+    draw_bodies(figure, design, front, first.factor, second.factor, progress);
     return figure;
 }
 
@@ -318,7 +334,8 @@ Figure parallel_figure(const tables::DesignSearch& search, const std::vector<Can
     }
     for (std::size_t k = 0; k < range.size(); ++k) {
         const auto& response = problem.objectives[k].response;
-        axis(response.name, range[k].first, range[k].second, search.unit_of(response));
+        const ToldResponse told(search, response);
+        axis(response.name, told.factor * range[k].first, told.factor * range[k].second, told.unit);
     }
     const auto add = [&](const std::vector<Candidate>& designs, const std::string& name, core::Colour colour,
                          double thickness) {

@@ -6,6 +6,7 @@
 #include "cases/design_figures.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/told.h"
 
 namespace underbody::cases {
 
@@ -51,8 +52,7 @@ void designs_table(core::HtmlPage& page, const tables::DesignSearch& search, con
             row.push_back(with_unit(c.at[v], problem.variables[v].unit));
         }
         const auto value = [&](const tables::ResponseValue& r, const tables::Response& response) {
-            return core::format_number(r.value, 4) + " +- " + core::format_number(r.sigma, 2) + " " +
-                   search.unit_of(response);
+            return core::told(r.value, r.sigma, search.unit_of(response), 4);
         };
         for (std::size_t k = 0; k < c.objectives.size(); ++k) {
             row.push_back(value(c.objectives[k], problem.objectives[k].response));
@@ -71,13 +71,14 @@ void designs_table(core::HtmlPage& page, const tables::DesignSearch& search, con
 std::string design_report(const Design& design, const FigureRenderer& renderer, core::Progress& progress) {
     const DesignSpec& spec = design.spec();
     core::HtmlPage page("Design search", spec.shape.filename().string());
-    std::size_t solved = 0;
+    std::size_t solved = 0, runs = 0;
     for (const DesignRun& run : design.runs()) {
         solved += run.usable() ? 1 : 0;
+        runs += run.repeated ? 0 : 1;
     }
     page.facts({{std::to_string(spec.variables.size()), "numbers of the shape varied"},
                 {std::to_string(design.plan().size()), "designs"},
-                {std::to_string(solved) + " of " + std::to_string(design.runs().size()), "runs that can be used"}});
+                {std::to_string(solved) + " of " + std::to_string(runs), "runs that can be used"}});
     for (const auto& note : design.notes) {
         page.warning(note.message);
     }

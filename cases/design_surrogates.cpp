@@ -65,6 +65,9 @@ tables::DesignSearch::NextOptions Design::known() const {
     }
     std::map<std::vector<double>, bool> solved;
     for (const DesignRun& run : runs_) {
+        if (run.repeated) {
+            continue;
+        }
         const std::vector<double> at(run.at.begin(),
                                      run.at.begin() + static_cast<std::ptrdiff_t>(spec_.variables.size()));
         auto [entry, fresh] = solved.try_emplace(at, run.usable());

@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/no_limit.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/shell.h"
@@ -86,8 +87,7 @@ std::string text_of(const tables::DesignSearch& search, const tables::Candidate&
         text += "  " + problem.variables[v].name + " = " + shown(c.at[v], problem.variables[v].unit) + "\n";
     }
     const auto line = [&](const tables::Response& response, const tables::ResponseValue& value) {
-        text += "  " + response.name + ": " + core::format_number(value.value, 4) + " +- " +
-                core::format_number(value.sigma, 2) + " " + search.unit_of(response) + "\n";
+        text += "  " + response.name + ": " + core::told(value.value, value.sigma, search.unit_of(response), 4) + "\n";
     };
     for (std::size_t k = 0; k < c.objectives.size(); ++k) {
         line(problem.objectives[k].response, c.objectives[k]);
@@ -137,10 +137,14 @@ int run(Shell& shell, const Arguments& a) {
         design.make_plan(shell.progress());
     }
     design.solve(study, a.jobs, shell.progress());
-    std::size_t good = 0, computed = 0;
+    std::size_t good = 0, computed = 0, all = 0;
     json failed = json::array();
     std::string text;
     for (const auto& one : design.runs()) {
+        if (one.repeated) {
+            continue;
+        }
+        ++all;
         good += one.usable() ? 1 : 0;
         computed += one.loads.empty() ? 0 : 1;
         if (!one.usable()) {
@@ -150,11 +154,10 @@ int run(Shell& shell, const Arguments& a) {
     }
     const std::string file = (design.spec().folder / "results.csv").string();
     if (shell.json) {
-        shell.print_json({{"results", file}, {"runs", design.runs().size()}, {"usable", good}, {"failed", failed}});
+        shell.print_json({{"results", file}, {"runs", all}, {"usable", good}, {"failed", failed}});
     }
-    shell.print(text + file + ": " + std::to_string(good) + " of " + core::counted(design.runs().size(), "run") +
-                " can be used\n");
-    return computed == 0 && !design.runs().empty() ? wrong_input : done;  // not one case gave loads
+    shell.print(text + file + ": " + std::to_string(good) + " of " + core::counted(all, "run") + " can be used\n");
+    return computed == 0 && all > 0 ? wrong_input : done;  // not one case gave loads
 }
 
 int fit(Shell& shell, const Arguments& a) {
@@ -226,19 +229,18 @@ std::string what_excludes(const tables::DesignSearch& search,
     std::string text;
     bool each = !limits.empty();
     for (std::size_t k = 0; k < limits.size(); ++k) {
-        const std::string unit = " " + search.unit_of(limits[k].response);
+        const std::string unit = search.unit_of(limits[k].response);
         json one = {{"name", limits[k].response.name}, {"met_alone", alone[k] && alone[k]->met}};
         text += "  " + limits[k].response.name + ": ";
         if (alone[k]) {
             one["nearest"] = {{"value", alone[k]->nearest.value}, {"sigma", alone[k]->nearest.sigma}};
             text += std::string(alone[k]->met ? "can be met alone, with " : "cannot be met: at the nearest ") +
-                    core::format_number(alone[k]->nearest.value, 4) + " +- " +
-                    core::format_number(alone[k]->nearest.sigma, 2) + unit;
+                    core::told(alone[k]->nearest.value, alone[k]->nearest.sigma, unit, 4);
         } else {
             text += "no shape meets the limits that are known without a run";
         }
         const auto bound = [&](const char* words, double value) {
-            text += core::is_limit(value) ? ", " + std::string(words) + " " + core::format_number(value, 4) + unit : "";
+            text += core::is_limit(value) ? ", " + std::string(words) + " " + core::told(value, unit, 4) : "";
         };
         bound("wanted at least", limits[k].lower);
         bound("at most", limits[k].upper);

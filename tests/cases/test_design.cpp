@@ -262,6 +262,60 @@ TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
     EXPECT_EQ(none.surrogates().at("lift_force").check().points, 96u);
 }
 
+/// A run that stands twice counts once, and it is said which.
+TEST_F(DesignFiles, ARunThatStandsTwiceCountsOnce) {
+    Design design = open();
+    design.make_plan();
+    compute(design);
+    const fs::path file = folder_.path() / "design" / "results.csv";
+    const std::string whole = core::read_file(file);
+    const std::size_t begin = whole.find('\n') + 1, end = whole.find('\n', begin) + 1;
+    const std::string first = whole.substr(begin, end - begin);
+    const auto read_with = [&](const std::string& row) {
+        core::write_file(file, whole + row);
+        return open();
+    };
+    const auto counted = [&](const Design& one) { return one.surrogates().at("lift_force").check().points; };
+    EXPECT_EQ(counted(read_with("")), 96u);
+    const Design copied = read_with(first);
+    EXPECT_EQ(counted(copied), 96u);
+    ASSERT_EQ(copied.notes.size(), 1u);
+    EXPECT_THAT(copied.notes.front().message,
+                testing::HasSubstr("rows 1 and 97 are of the same case (design-001): it counts once"));
+    EXPECT_THAT(copied.notes.front().place.text(), testing::HasSubstr("results.csv:98"));
+    std::string other_name = first;
+    other_name.replace(0, other_name.find(','), "typed");
+    EXPECT_EQ(counted(read_with(other_name)), 96u) << "the same loads under another name";
+    std::string again = first;  // computed again, with another lift
+    std::size_t lift_at = 0;
+    for (int column = 0; column < 6; ++column) {
+        lift_at = again.find(',', lift_at) + 1;
+    }
+    again.replace(lift_at, again.find(',', lift_at) - lift_at, "0.5");
+    const Design changed = read_with(again);
+    EXPECT_EQ(counted(changed), 96u);
+    EXPECT_TRUE(changed.runs().front().repeated);
+    EXPECT_FALSE(changed.runs().back().repeated);
+    EXPECT_THAT(changed.notes.front().message, testing::HasSubstr("the last counts, their loads differ"));
+    EXPECT_EQ(changed.results_table().rows(), 97u) << "what somebody wrote stays";
+}
+
+TEST_F(DesignFiles, APlannedDesignStandsOnce) {
+    Design design = open();
+    design.make_plan();
+    const fs::path file = folder_.path() / "design" / "plan.csv";
+    std::string text = core::read_file(file);
+    text.replace(text.find("design-002"), 10, "design-001");
+    core::write_file(file, text);
+    try {
+        (void)open();
+        FAIL() << "two designs of one name";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("plan.csv:3"));
+        EXPECT_THAT(error.what(), testing::HasSubstr("the design design-001 stands twice"));
+    }
+}
+
 /// plan.csv and results.csv are written by people, too: with --force or without.
 TEST_F(DesignFiles, FilesOfPeopleAreWrittenOnAsTheyAreRead) {
     Design design = open();
