@@ -125,7 +125,7 @@ std::optional<std::array<double, 3>> lever_of(const ExportCommand& command) {
     return std::isnan(centre[2]) ? std::nullopt : std::optional(centre);
 }
 
-dynamics::MotionFmuOptions motion_options(const ExportCommand& command, const dynamics::Model& model) {
+dynamics::MotionFmuOptions motion_options(Shell& shell, const ExportCommand& command, const dynamics::Model& model) {
     const auto& motions = dynamics::fmu_motions();
     const auto motion = std::find(motions.begin(), motions.end(), command.motion);
     if (motion == motions.end()) {
@@ -140,6 +140,7 @@ dynamics::MotionFmuOptions motion_options(const ExportCommand& command, const dy
         options.held.set(name, value);
     }
     const MotionStart start = command.from.empty() ? MotionStart{} : motion_start(command.from, options.held);
+    shell.show(start.not_used_in(command.motion));
     const auto held = options.held.over(model.conditions);
     if (options.motion == dynamics::FmuMotion::heave) {
         options.start = {start.needed_gap(), start.heave_velocity.value_or(0)};
@@ -189,7 +190,7 @@ int run_motion(Shell& shell, const ExportCommand& command) {
                                "motion is written as it is simulated");
     }
     const auto model = dynamics::read_model(command.table.file);
-    auto options = motion_options(command, model);
+    auto options = motion_options(shell, command, model);
     options.overwrite = options.overwrite || shell.force;
     const core::ReplacingAllowed by_the_export_itself;
     const auto fmu = dynamics::export_motion_fmu(model, command.out, options);

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
@@ -18,6 +19,7 @@
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/linear/trim_error.h"
 #include "surrogates/dynamics/model/table_notes.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
@@ -482,6 +484,16 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     }
     const std::optional<dynamics::HeaveEquilibrium> at = trim_of(a, given);
     const dynamics::Conditions held = given.over(model.conditions);
+    if (const double ground = at ? dynamics::HeavePlant(model, held).terms.contact_gap : 0; at && at->gap < ground) {
+        throw core::InputError("range",
+                               "--at lies in the ground: gap " + core::told(at->gap, "m") +
+                                   " is below the contact gap " + core::told(ground, "m"),
+                               {a.model, {}, {}, {}}, "a trim above it, or set [contact] gap in the model");
+    }
+    if (at && at->pitch != 0 && !pitches(model)) {
+        shell.show_warning("the model has no motion in pitch: pitch " + core::told(at->pitch, "rad") +
+                           " of --at is not used");
+    }
     const std::vector<double> weights = weights_of(a.weights);
     shell.show(model.remarks);
     shell.show(dynamics::HeavePlant(model, held).left_out_of_small_motions());
@@ -497,6 +509,9 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     }
     if (!std::isnan(v.yaw_inertia)) {
         surface(model, held, a, json, text);
+        if (json.contains("surface")) {
+            shell.show(dynamics::taken_as_zero_on_ground(model));
+        }
     } else if (!a.gamma_chart.empty()) {
         throw core::InputError("missing", "the chart of jet angles needs vehicle.yaw_inertia", {a.model, {}, {}, {}});
     }

@@ -1,6 +1,7 @@
 #include "studio/cli/motion_start.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/units.h"
@@ -46,6 +47,31 @@ MotionStart motion_start(const std::string& text, dynamics::Conditions& held) {
         }
     }
     return start;
+}
+
+core::Problems MotionStart::not_used_in(const std::string& motion) const {
+    const bool vertical = motion != "surface", turning = motion == "heave-pitch" || motion == "body",
+               along = motion == "surface" || motion == "body";
+    const std::tuple<const char*, std::optional<double>, bool> states[] = {{"gap", gap, vertical},
+                                                                           {"heave_velocity", heave_velocity, vertical},
+                                                                           {"pitch", pitch, turning},
+                                                                           {"pitch_rate", pitch_rate, turning},
+                                                                           {"sway_velocity", sway_velocity, along},
+                                                                           {"yaw_rate", yaw_rate, along},
+                                                                           {"heading", heading, along},
+                                                                           {"north", north, along},
+                                                                           {"east", east, along}};
+    std::string list;
+    for (const auto& [name, value, has] : states) {
+        list += value.value_or(0) != 0 && !has ? (list.empty() ? "" : ", ") + std::string(name) : "";
+    }
+    if (list.empty()) {
+        return {};
+    }
+    return {{core::Problem::Severity::warning,
+             "of the start not used: " + list + "; the motion " +
+                 (motion == "surface" ? "on the ground" : "in " + motion) + " has no such state",
+             {}}};
 }
 
 double MotionStart::needed_gap() const {

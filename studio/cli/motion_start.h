@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
 
@@ -15,6 +16,8 @@ struct MotionStart {
     [[nodiscard]] bool turns() const { return pitch || pitch_rate; }
     [[nodiscard]] bool travels() const { return sway_velocity || yaw_rate || heading || north || east; }
 
+    /// A warning that names the states which a motion has not: "heave", "heave-pitch", "surface", "body".
+    [[nodiscard]] core::Problems not_used_in(const std::string& motion) const;
     /// Throws core::UsageError where it was not said.
     [[nodiscard]] double needed_gap() const;
     /// Zero where nothing was said; the speed is then that of the conditions. Throw as needed_gap().

@@ -20,10 +20,16 @@ void mention_common_options(CLI::App& app) {
 }
 
 /// An option that may be given several times takes one word each time: else it would take the words behind it too, a
-/// file among them (--zones hull body.csv). The word says something: an empty one would count as not given.
+/// file among them (--zones hull body.csv). The word says something: an empty one would count as not given. A count
+/// below zero would be read as one of 2^64 less so many.
 void one_word_an_option(CLI::App& app) {
     const CLI::Validator something(
         [](const std::string& word) { return word.empty() ? "it is empty: leave it out, or say what" : std::string(); },
+        "", "");
+    const CLI::Validator no_sign(
+        [](const std::string& word) {
+            return word.starts_with('-') ? "'" + word + "' is below 0: it counts" : std::string();
+        },
         "", "");
     for (auto* option : app.get_options()) {
         if (option->get_positional() || option->get_items_expected_max() == 0) {
@@ -33,6 +39,9 @@ void one_word_an_option(CLI::App& app) {
             option->allow_extra_args(false);
         }
         option->check(something);
+        if (option->get_type_name().starts_with("UINT")) {
+            option->check(no_sign);
+        }
     }
     for (auto* command : app.get_subcommands([](CLI::App*) { return true; })) {
         one_word_an_option(*command);

@@ -9,6 +9,7 @@
 
 #include "core/table.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/feedback_options.h"
@@ -200,6 +201,12 @@ Job job_of(const SimulateArguments& a, Shell& shell) {
     if (!(job.options.duration > 0) || job.options.output_step < 0 || !(a.tolerance > 0) || a.tolerance > 0.1) {
         throw core::UsageError("range", "--for must be positive, --step not negative, --tolerance between 0 and 0.1");
     }
+    if (job.options.escape_gap > 0 && job.start.gap.value_or(0) >= job.options.escape_gap) {
+        throw core::UsageError("range",
+                               "the start at gap " + core::told(*job.start.gap, "m") + " lies beyond --escape " +
+                                   core::told(job.options.escape_gap, "m"),
+                               {}, "a larger --escape, or none");
+    }
     return job;
 }
 
@@ -289,11 +296,10 @@ void run_surface(const SimulateArguments& a, Job& job, Shell& shell) {
                                        job.start.heading.value_or(0),
                                        job.start.north.value_or(0),
                                        job.start.east.value_or(0)};
-    const dynamics::SurfaceTrajectory motion = dynamics::simulate_surface(
-        body, start, job.command(), job.body_options(), shell.progress(), job.inputs.signals);
-    core::Problems remarks;
-    add_remarks(remarks, job.model);
-    shell.show(remarks);
+    dynamics::SurfaceTrajectory motion = dynamics::simulate_surface(body, start, job.command(), job.body_options(),
+                                                                    shell.progress(), job.inputs.signals);
+    add_remarks(motion.remarks, job.model);
+    shell.show(motion.remarks);
     write_motion(motion, dynamics::trajectory_figure(motion), a, job, shell);
     const dynamics::SurfaceState& last = motion.state.back();
     shell.print("ends by " + motion.end + " at t = " + core::format_number(motion.time.back(), 6) + " s, speed " +
@@ -347,6 +353,7 @@ int run_simulate(const SimulateArguments& a, Shell& shell) {
         throw core::UsageError("range", "--feedback and --lqr close the loop in heave and in heave and pitch", {},
                                "for jets: --hold heading=20deg,speed=0.35m/s");
     }
+    shell.show(job.start.not_used_in(motion));
     if (motion == "heave") {
         const std::vector<std::string> quantities = job.model.quantities();
         if (std::find(quantities.begin(), quantities.end(), "pitch_moment") != quantities.end() && a.motion == "auto") {

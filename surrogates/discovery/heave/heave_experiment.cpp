@@ -7,6 +7,7 @@
 
 #include "core/text.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
 
@@ -44,24 +45,12 @@ HeaveExperiment::HeaveExperiment(const dynamics::Model& model, const HeaveRecord
         bare_.push_back(std::move(terms));
     }
     const auto choose = [&](const char* channel, std::optional<double> declared, double estimated, std::string& from) {
-        if (!declared || !(estimated > 0)) {
-            from = declared ? "declared" : "estimated";
-            return declared.value_or(estimated > 0 ? estimated : 1e-6);
+        const dynamics::JudgedNoise judged = dynamics::judged_noise(channel, declared, estimated);
+        from = judged.from;
+        if (!judged.doubt.empty()) {
+            problems_.push_back({core::Problem::Severity::warning, judged.doubt, {}});
         }
-        const double ratio = estimated / *declared;
-        if (ratio > 0.88 && ratio < 1.14) {
-            from = "declared";
-            return *declared;
-        }
-        from = "estimated: the scatter from reading to reading is " + core::format_number(ratio, 3) +
-               " times the declared figure";
-        problems_.push_back(
-            {core::Problem::Severity::warning,
-             std::string("the declared noise of ") + channel + " (" + core::format_number(*declared, 3) +
-                 ") disagrees with the scatter from reading to reading (" + core::format_number(estimated, 3) +
-                 "): the figure is wrong or the noise is coloured; the scatter is used",
-             {}});
-        return estimated;
+        return judged.value;
     };
     noise_.gap = choose("gap", declared_gap_noise, records_.gap_noise, gap_from_);
     if (records_.velocity_measured) {

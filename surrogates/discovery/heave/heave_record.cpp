@@ -301,18 +301,44 @@ VelocityScale velocity_scale(const HeaveRecord& record, double gap_noise) {
     return by_gap > 0 ? VelocityScale{cross / by_gap, std::sqrt(by_velocity / by_gap)} : VelocityScale{};
 }
 
+/// A run that can be used, and what it says of the whole set: nothing of one that is left out counts there.
+struct UsedRun {
+    HeaveRecord record;
+    double gap_noise = 0, velocity_noise = std::nan("");  ///< NaN: not measured
+    std::vector<double> steps;                            ///< s, between readings
+    bool input_recorded = false;
+    core::Problems said;
+};
+
 /// Of measurements that were read none is left; those made in memory may have some.
-void drop_copies(HeaveRecords& result, const dynamics::Measurements& data) {
-    for (std::size_t a = 0; a < result.records.size(); ++a) {
-        for (std::size_t b = result.records.size(); b-- > a + 1;) {
-            const dynamics::MeasuredRun &first = data.runs[result.records[a].run],
-                                        &later = data.runs[result.records[b].run];
+void drop_copies(std::vector<UsedRun>& used, const dynamics::Measurements& data, core::Problems& problems) {
+    for (std::size_t a = 0; a < used.size(); ++a) {
+        for (std::size_t b = used.size(); b-- > a + 1;) {
+            const dynamics::MeasuredRun &first = data.runs[used[a].record.run], &later = data.runs[used[b].record.run];
             if (dynamics::same_readings(first, later)) {
-                result.problems.push_back(dynamics::used_once(later, first));
-                result.records.erase(result.records.begin() + static_cast<std::ptrdiff_t>(b));
+                problems.push_back(dynamics::used_once(later, first));
+                used.erase(used.begin() + static_cast<std::ptrdiff_t>(b));
             }
         }
     }
+}
+
+void put_together(std::vector<UsedRun> used, HeaveRecords& result) {
+    std::vector<double> gap_noises, velocity_noises, steps;
+    for (UsedRun& one : used) {
+        gap_noises.push_back(one.gap_noise);
+        if (std::isfinite(one.velocity_noise)) {
+            velocity_noises.push_back(one.velocity_noise);
+        }
+        steps.insert(steps.end(), one.steps.begin(), one.steps.end());
+        result.input_recorded = result.input_recorded || one.input_recorded;
+        result.problems.insert(result.problems.end(), one.said.begin(), one.said.end());
+        result.records.push_back(std::move(one.record));
+    }
+    result.velocity_measured = !velocity_noises.empty();
+    result.raw_step = median(steps);
+    result.gap_noise = median(gap_noises);
+    result.velocity_noise = velocity_noises.empty() ? 0 : median(velocity_noises);
 }
 
 /// Conditions that changed within a run: over each step what the lift of the one table source is, over what it is with
@@ -433,9 +459,7 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
 HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data) {
     HeaveRecords result;
     result.step = step_for(data);
-    std::vector<double> gap_noises;
-    std::vector<double> velocity_noises;
-    std::vector<double> steps;
+    std::vector<UsedRun> all_used;
     std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
     bool unit = false;
     std::size_t still = 0;
@@ -443,7 +467,12 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
         const dynamics::MeasuredRun& run = data.runs[r];
         const std::string file = run.table.source;
-        HeaveRecord record;
+        if (const std::string none = dynamics::empty_text(run, "gap"); !none.empty()) {
+            remark(result.problems, none + ": it is left out", file);
+            continue;
+        }
+        UsedRun used;
+        HeaveRecord& record = used.record;
         record.name = run.name;
         record.run = r;
         const dynamics::Conditions held = held_conditions(run);
@@ -460,7 +489,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         const std::size_t saturated = dynamics::drop_saturated(time, gap);
         const double noise = dynamics::sensor_noise(time, gap);  // a reading at the end of the range has none
         if (saturated > 0) {
-            remark(result.problems, dynamics::saturated_text(run.name, saturated), file);
+            remark(used.said, dynamics::saturated_text(run.name, saturated), file);
         }
         if (stuck(gap) || 2 * saturated > gap.size()) {
             remark(
@@ -489,17 +518,17 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         }
         const std::size_t outliers = dynamics::drop_outliers(gap, std::max(noise, 1e-9));
         if (outliers > 0) {
-            remark(result.problems, dynamics::outliers_text(run.name, outliers), file);
+            remark(used.said, dynamics::outliers_text(run.name, outliers), file);
         }
         if (!std::isfinite(noise)) {
             remark(result.problems, run.name + " is left out: it has hardly any gap readings", file);
             continue;
         }
-        gap_noises.push_back(noise);
+        used.gap_noise = noise;
         for (std::size_t i = 0, before = time.size(); i < time.size(); ++i) {
             if (std::isfinite(gap[i])) {
                 if (before < i) {
-                    steps.push_back(time[i] - time[before]);
+                    used.steps.push_back(time[i] - time[before]);
                 }
                 before = i;
             }
@@ -514,42 +543,43 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
         std::string held_at_mean;
         record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);
         if (!held_at_mean.empty()) {
-            remark(result.problems,
+            remark(used.said,
                    held_at_mean + " changes within " + run.name +
                        " and moves a table or one of several sources of lift: held at its mean",
                    file);
         }
         const core::Column* velocity = run.table.find("heave_velocity");
-        if (velocity != nullptr && !velocity->is_text()) {
+        if (velocity != nullptr && !velocity->is_text() && dynamics::empty_text(run, "heave_velocity").empty()) {
             std::vector<double> values = dynamics::as_read(run, "heave_velocity", model.records);
             const double own = dynamics::sensor_noise(time, values);
             if (stuck(values) || !std::isfinite(own)) {
-                remark(result.problems,
+                remark(used.said,
                        "heave_velocity of " + run.name +
                            " stands still for a fifth of the run or is missing: it is not used",
                        file);
             } else {
                 dynamics::drop_outliers(values, std::max(own, 1e-9));
-                velocity_noises.push_back(own);
+                used.velocity_noise = own;
                 average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
                 if (coloured) {
                     record.velocity = first_of_steps(values, step_of, record.time.size());
                     record.velocity_share.assign(record.time.size(), 1);
                 }
-                result.velocity_measured = true;
             }
         }
         if (const std::string outside = keep_inside_tables(record, noise); !outside.empty()) {
-            remark(result.problems, outside, file);
+            remark(used.said, outside, file);
         }
         read_input(run, model.records, record);
-        result.input_recorded = result.input_recorded || run.has("input_force");
+        const std::vector<double> input = run.values("input_force");
+        used.input_recorded =
+            std::any_of(input.begin(), input.end(), [](double value) { return std::isfinite(value); });
         if (record.time.size() < 20) {
             remark(result.problems, run.name + " has fewer than 20 steps: left out", file);
             continue;
         }
         prepare_input(record);
-        result.records.push_back(std::move(record));
+        all_used.push_back(std::move(used));
     }
     if (swapped > 0 && 2 * swapped >= data.runs.size()) {
         // what looks right in the others is then chance
@@ -560,7 +590,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                                core::Place{data.folder.string(), {}, {}, {}},
                                "exchange the two names in the header lines");
     }
-    if (result.records.empty()) {
+    if (all_used.empty()) {
         const std::string first = result.problems.empty() ? "" : result.problems.front().message;
         throw core::InputError(
             unit ? "unit" : "range", "no run can be used" + (first.empty() ? std::string() : ": " + first),
@@ -571,10 +601,8 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
                                           "within them; `underbody predict` "
                                           "shows the model beside each run");
     }
-    result.raw_step = median(steps);
-    result.gap_noise = median(gap_noises);
-    result.velocity_noise = velocity_noises.empty() ? 0 : median(velocity_noises);
-    drop_copies(result, data);
+    drop_copies(all_used, data, result.problems);
+    put_together(std::move(all_used), result);
     check_velocities(result, data);
     return result;
 }

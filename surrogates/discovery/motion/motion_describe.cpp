@@ -8,6 +8,7 @@
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 
 namespace underbody::discovery {
 
@@ -33,8 +34,8 @@ void MotionLoop::measure_error() {
             };
             change.before = estimate(before);
             change.after = estimate(after);
-            if (!std::isfinite(change.before.rmse) || !std::isfinite(change.after.rmse)) {
-                continue;
+            if (!std::isfinite(change.before.rmse) || !std::isfinite(change.after.rmse) || change.before.count == 0) {
+                continue;  // no held-out run has it
             }
             const double fall = (change.before.rmse - change.after.rmse) / change.noise;
             if (horizon == options_.horizon && fall > most) {
@@ -146,7 +147,9 @@ void MotionLoop::describe() {
                    result_.alternatives.front().told_apart_by + "."
              : "No further experiment is designed for " + shape().words +
                    "; runs in other states and with other inputs would show effects below the limits given here.";
-    result_.problems.insert(result_.problems.end(), data_.problems.begin(), data_.problems.end());
+    for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_)}) {
+        result_.problems.insert(result_.problems.end(), more.begin(), more.end());
+    }
     result_.problems.push_back({core::Problem::Severity::note,
                                 shape().words +
                                     ": waves, forces with memory and numbers that differ from run "

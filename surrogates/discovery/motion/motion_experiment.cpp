@@ -373,9 +373,7 @@ std::vector<MotionRecord> motion_records(const dynamics::Motion& motion, const d
         const dynamics::MeasuredRun& run = data.runs[r];
         const auto measured = motion.run(model, run, model.records);
         const core::Place place{run.file.string(), {}, {}, {}};
-        for (const std::string& text : measured->clean_readings(run.name, model)) {
-            problems.push_back({core::Problem::Severity::warning, text, place});
-        }
+        const std::vector<std::string> not_used = measured->clean_readings(run.name, model);
         measured->set_noise(dynamics::motion_noise(motion.shape(), data, run));
         const std::size_t end = measured->free_rows();
         if (end < least_rows) {
@@ -384,6 +382,9 @@ std::vector<MotionRecord> motion_records(const dynamics::Motion& motion, const d
                                     motion.shape().end_of_free + " or ends: not used",
                                 place});
             continue;
+        }
+        for (const std::string& text : not_used) {
+            problems.push_back({core::Problem::Severity::warning, text, place});
         }
         if (end < run.table.rows()) {
             problems.push_back({core::Problem::Severity::warning,

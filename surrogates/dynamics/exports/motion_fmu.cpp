@@ -9,6 +9,7 @@
 #include "surrogates/dynamics/exports/motion_description.h"
 #include "surrogates/dynamics/model/force_sources.h"
 #include "surrogates/dynamics/model/source_shares.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/plant/pitch_effects.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
@@ -282,6 +283,10 @@ MotionFmu export_motion_fmu(const Model& declared, const std::filesystem::path& 
     MotionFmu fmu;
     fmu.file = path;
     fmu.remarks = motion_remarks(model, held);
+    if (options.motion == FmuMotion::body) {
+        const core::Problems unsaid = taken_as_zero_of_body(model, true);
+        fmu.remarks.insert(fmu.remarks.end(), unsaid.begin(), unsaid.end());
+    }
     std::vector<Channel> varying = varying_of(model, options.motion);
     hold_what_effects_need(model, options.motion, varying, fmu);
     if (options.motion == FmuMotion::heave_pitch) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "surrogates/dynamics/model/force_error.h"
 #include "surrogates/dynamics/model/vehicle_forces.h"
@@ -154,6 +155,16 @@ private:
             for (const TableAxisOf& own : axis.tables) {
                 axis.lower = std::min(axis.lower, own.get().lower);
                 axis.upper = std::max(axis.upper, own.get().upper);
+            }
+            if (asked.lower.value_or(axis.lower) < axis.lower || asked.upper.value_or(axis.upper) > axis.upper) {
+                out_.remarks.push_back(
+                    {core::Problem::Severity::warning,
+                     asked.name + " is asked from " +
+                         core::told_range(asked.lower.value_or(axis.lower), asked.upper.value_or(axis.upper),
+                                          channel_unit(axis.channel)) +
+                         ", the tables of the model cover " +
+                         core::told_range(axis.lower, axis.upper, channel_unit(axis.channel)) + ": it ends with them",
+                     {model_.name, {}, {}, {}}});
             }
             axis.lower = std::max(axis.lower, asked.lower.value_or(axis.lower));
             axis.upper = std::min(axis.upper, asked.upper.value_or(axis.upper));

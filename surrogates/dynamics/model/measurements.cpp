@@ -251,6 +251,17 @@ void check_names(const MeasuredRun& run, bool time_series, bool of_jets, core::P
     }
 }
 
+/// Columns of known quantities in which nothing was read.
+void check_empty(const MeasuredRun& run, core::Problems& problems) {
+    for (const core::Column& column : run.table.columns()) {
+        if (core::find_quantity(column.name) != nullptr && !empty_text(run, column.name).empty()) {
+            problems.push_back({core::Problem::Severity::warning,
+                                "the column '" + column.name + "' has no value: it counts as not measured",
+                                run.table.place(0, column.name)});
+        }
+    }
+}
+
 /// The same problem in many runs is one line.
 void gather(core::Problems& problems) {
     core::Problems once;
@@ -285,6 +296,14 @@ std::vector<double> MeasuredRun::values(const std::string& quantity) const {
         return std::vector<double>(table.rows(), condition->second);
     }
     return {};
+}
+
+std::string empty_text(const MeasuredRun& run, const std::string& channel) {
+    const core::Column* column = run.table.find(channel);
+    const bool empty =
+        column != nullptr && !column->is_text() &&
+        std::none_of(column->numbers.begin(), column->numbers.end(), [](double value) { return std::isfinite(value); });
+    return empty ? "run " + run.name + " has no value of " + channel : "";
 }
 
 bool MeasuredRun::has(const std::string& quantity) const {
@@ -380,6 +399,7 @@ Measurements read_measurements(const std::filesystem::path& folder) {
                    of_jets = time_series && (data.motion == "surface" || data.motion == "body");
         time_series ? check_time_series(run, data.motion) : check_static(run);
         check_names(run, time_series, of_jets, data.problems);
+        check_empty(run, data.problems);
         data.runs.push_back(std::move(run));
     }
     gather(data.problems);

@@ -29,6 +29,9 @@ struct MeasuredRun {
     [[nodiscard]] bool has(const std::string& quantity) const;
 };
 
+/// "run run-03 has no value of gap", of a column that is there; empty where it has one, and where there is none.
+std::string empty_text(const MeasuredRun& run, const std::string& channel);
+
 enum class MeasurementKind { time_series, steady };
 
 struct Measurements {

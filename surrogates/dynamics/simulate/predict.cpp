@@ -14,8 +14,10 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/dynamics/model/table_notes.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
+#include "surrogates/dynamics/simulate/declared_noise.h"
 #include "surrogates/dynamics/simulate/horizon.h"
 #include "surrogates/dynamics/simulate/motion_predict.h"
 #include "surrogates/dynamics/simulate/start_state.h"
@@ -138,6 +140,9 @@ public:
           options_(options),
           gap_noise_(gap_noise),
           velocity_noise_(velocity_noise) {
+        if (std::none_of(velocity_.begin(), velocity_.end(), [](double value) { return std::isfinite(value); })) {
+            velocity_.clear();
+        }
         const std::vector<double>& time = signals_.time;
         saturated_ = drop_saturated(time, gap_);
         const double own = sensor_noise(time, gap_);
@@ -415,16 +420,21 @@ void remark_unused(const SeriesPrediction& all, const Model& model, const Measur
         const auto say = [&](const std::string& text) {
             out.remarks.push_back({core::Problem::Severity::warning, text, {data.runs[r].table.source, {}, {}, {}}});
         };
-        if (predictor.saturated() > 0) {
+        if (const std::string none = empty_text(data.runs[r], "gap"); !none.empty()) {
+            say(none + ": it is left out");
+            continue;
+        }
+        const bool used = !all.rows[r].empty();
+        if (used && predictor.saturated() > 0) {
             say(saturated_text(run, predictor.saturated()));
         }
-        if (predictor.outliers() > 0) {
+        if (used && predictor.outliers() > 0) {
             say(outliers_text(run, predictor.outliers()));
         }
         if (inside.outside > 0 && !all.outside_too) {
             const std::span<const double> time(predictor.time());
             say(unused_text(run, inside, tables, time.subspan(inside.first, inside.last - inside.first)));
-        } else if (all.rows[r].empty()) {
+        } else if (!used) {
             say("run " + run + " is shorter than the time a prediction needs and was left out");
         }
     }
@@ -441,6 +451,11 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
                           core::Progress& progress) {
     if (const Motion* const motion = motion_of(model, data)) {
         return predict_motion_series(*motion, model, data, options, progress);
+    }
+    if (std::none_of(data.runs.begin(), data.runs.end(),
+                     [](const MeasuredRun& run) { return empty_text(run, "gap").empty(); })) {
+        throw core::InputError("missing", "no run has a value of gap", {data.folder.string(), {}, {}, {}},
+                               "heave is not told without it");
     }
     Prediction out;
     out.time_series = true;
@@ -610,9 +625,15 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     if (!(options.horizon > 0)) {
         throw core::UsageError("range", "the horizon must be positive");
     }
-    Prediction prediction = data.kind == MeasurementKind::steady ? predict_static(model, data)
-                                                                 : predict_series(model, data, options, progress);
-    prediction.remarks.insert(prediction.remarks.begin(), data.problems.begin(), data.problems.end());
+    const bool steady = data.kind == MeasurementKind::steady;
+    core::Problems before = data.problems;
+    const std::optional<Measurements> without = steady ? std::nullopt : without_doubtful_noise(model, data, before);
+    Prediction prediction =
+        steady ? predict_static(model, data) : predict_series(model, without ? *without : data, options, progress);
+    for (core::Problem& unsaid : taken_as_zero(prediction.motion, model)) {
+        before.push_back(std::move(unsaid));
+    }
+    prediction.remarks.insert(prediction.remarks.begin(), before.begin(), before.end());
     const core::Problems outside = runs_outside(model, data);
     prediction.remarks.insert(prediction.remarks.end(), outside.begin(), outside.end());
     const bool pushed =

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
 #include "surrogates/dynamics/simulate/rigid_body.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
@@ -224,6 +225,11 @@ BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, cons
     BodyFlight(body, command, options, inputs, out)
         .fly(start, inputs.time.empty() ? 0.0 : inputs.time.front(), progress);
     remark_outside(out.remarks, out.outside);
+    const bool touches = std::any_of(out.contact.begin(), out.contact.end(),
+                                     [](ContactState state) { return state != ContactState::free; });
+    for (core::Problem& unsaid : taken_as_zero_of_body(body.model(), touches)) {
+        out.remarks.push_back(std::move(unsaid));
+    }
     return out;
 }
 

@@ -5,6 +5,10 @@
 #include <limits>
 #include <vector>
 
+#include "core/text.h"
+#include "core/told.h"
+#include "core/units.h"
+
 namespace underbody::dynamics {
 
 double reading_step(std::span<const double> values) {
@@ -105,6 +109,25 @@ double sensor_noise(std::span<const double> time, std::span<const double> values
     // A coarse sensor repeats its reading more often than not: half of its differences, and with them the middle, are
     // naught.
     return std::isnan(scatter) ? scatter : std::max(scatter, reading_step(values) / std::sqrt(12.0));
+}
+
+JudgedNoise judged_noise(const std::string& channel, std::optional<double> declared, double estimated) {
+    constexpr double least = 1e-6, lower = 0.88, upper = 1.14;  // m or m/s; of the declared figure
+    if (!declared || !(estimated > 0)) {
+        return {declared.value_or(estimated > 0 ? estimated : least), declared ? "declared" : "estimated", ""};
+    }
+    const double ratio = estimated / *declared;
+    if (ratio > lower && ratio < upper) {
+        return {*declared, "declared", ""};
+    }
+    const core::QuantityName* quantity = core::find_quantity(channel);
+    const std::string_view unit = quantity != nullptr ? std::string_view(quantity->unit) : "";
+    return {estimated,
+            "estimated: the scatter from reading to reading is " + core::format_number(ratio, 3) +
+                " times the declared figure",
+            "the declared noise of " + channel + " (" + core::told(*declared, unit, 3) +
+                ") disagrees with the scatter from reading to reading (" + core::told(estimated, unit, 3) +
+                "): the figure is wrong or the noise is coloured; the scatter is used"};
 }
 
 }  // namespace underbody::dynamics

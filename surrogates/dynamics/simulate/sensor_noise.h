@@ -1,7 +1,9 @@
 // The noise of a sensor, estimated from its own readings: one estimate for predictions, filters and discovery.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 
 namespace underbody::dynamics {
 
@@ -23,5 +25,14 @@ double reading_step(std::span<const double> values);
 /// others are left, nor do missing values. Of a sensor that rounds at least that of its steps, step/sqrt(12). NaN with
 /// fewer than six differences.
 double sensor_noise(std::span<const double> time, std::span<const double> values);
+
+/// The noise of a channel as declared, unless its readings say otherwise.
+struct JudgedNoise {
+    double value = 0;
+    std::string from;   ///< "declared", "estimated", "estimated: the scatter ... times the declared figure"
+    std::string doubt;  ///< a sentence where the two disagree: the scatter is used; empty where they do not
+};
+/// `estimated`: the middle of sensor_noise() of the runs; not above 0: it is not known.
+JudgedNoise judged_noise(const std::string& channel, std::optional<double> declared, double estimated);
 
 }  // namespace underbody::dynamics

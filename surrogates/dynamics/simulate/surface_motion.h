@@ -73,6 +73,7 @@ struct SurfaceTrajectory {
     std::vector<std::string> jets;
     std::vector<TrajectoryEvent> events;  ///< lift_off, tips over the nose or tail edge, equilibrium
     std::string end = "time";             ///< "time", "lift_off", "tips on the nose edge", ..., "equilibrium"
+    core::Problems remarks;
     [[nodiscard]] core::Table table() const;
 };
 /// Until the body leaves the ground, tips, comes to a steady run (when asked) or the time is over. Jets as in

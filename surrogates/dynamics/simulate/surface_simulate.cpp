@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
 #include "surrogates/dynamics/simulate/trajectory_parts.h"
@@ -129,6 +130,7 @@ SurfaceTrajectory simulate_surface(const SurfaceMotion& motion, const SurfaceSta
         throw core::UsageError("range", "duration must be positive, the output step not negative");
     }
     SurfaceTrajectory out;
+    out.remarks = taken_as_zero_on_ground(motion.model());
     SurfaceRun(motion, command, options, inputs, out)
         .slide(start, inputs.time.empty() ? 0.0 : inputs.time.front(), progress);
     return out;
