@@ -169,6 +169,32 @@ TEST_F(BodyRuns, TheNoiseOfARateIsItsSensorsThoughAnEffectIsMissing) {
     EXPECT_TRUE(found.rest.is_noise) << found.sentence;
 }
 
+// One vehicle with a tracker, one with a gyro and a log of its speed: nothing is said of what no held-out run has.
+TEST_F(BodyRuns, AChannelThatNoHeldOutRunHasHasNoError) {
+    BodyRig rig;
+    rig.seconds = 12;
+    rig.thrust_gain = 0.9;
+    dynamics::Measurements data = test::body_rig_runs(rig, 2, 65);
+    rig.rates_only = true;
+    dynamics::Measurements others = test::body_rig_runs(rig, 2, 66);
+    for (dynamics::MeasuredRun& run : others.runs) {
+        run.name += "-rates";
+        data.runs.push_back(run);
+    }
+    data.runs.back().use = dynamics::RunUse::test;
+    DiscoverOptions options;
+    options.consequence = options.figures = false;
+    options.candidates = {"thrust_gain"};
+    const Discovery found = discover(model_, data, options);
+    EXPECT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_FALSE(found.error.empty());
+    for (const ErrorChange& change : found.error) {
+        EXPECT_GT(change.before.rmse, 0) << change.channel;
+        EXPECT_NE(change.channel, "position_x");
+        EXPECT_NE(change.channel, "heading");
+    }
+}
+
 /// The runs with one column changed.
 dynamics::Measurements changed(dynamics::Measurements data, const std::string& name,
                                const std::function<void(std::vector<double>&)>& change) {
