@@ -21,6 +21,7 @@
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/estimator/observe/information.h"
 #include "surrogates/estimator/observe/surface_bank.h"
 #include "surrogates/tables/exports/export.h"

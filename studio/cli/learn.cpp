@@ -19,6 +19,7 @@
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/estimator/control/bounds.h"
 #include "surrogates/estimator/model/run_data.h"
 #include "surrogates/estimator/model/training.h"

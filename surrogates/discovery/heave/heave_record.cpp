@@ -12,6 +12,7 @@
 #include "surrogates/dynamics/model/repeated_runs.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {

@@ -7,7 +7,7 @@
 #include "core/no_limit.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/pitch_run.h"
-#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 

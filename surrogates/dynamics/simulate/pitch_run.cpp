@@ -6,7 +6,7 @@
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"
 #include "surrogates/dynamics/simulate/motion_step.h"
-#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 #include "surrogates/dynamics/simulate/start_state.h"
 

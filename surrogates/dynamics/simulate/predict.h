@@ -85,15 +85,6 @@ std::string reading_text(const RecordReading& records);
 Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options = {},
                    core::Progress& progress = core::Progress::none());
 
-/// Known inputs and conditions of a run: columns that vary become signals, constant ones and conditions are held. The
-/// input as `records` says that it is to be read; held between samples where they do not say.
-InputSignals signals_of(const MeasuredRun& run, const RecordReading& records = {});
-/// A measured column as `records` says that it is to be read; empty when there is none. Where input_force has no value
-/// (rows of other sensors) it is held from the value before, or linear to the next one, as between its samples.
-std::vector<double> as_read(const MeasuredRun& run, const std::string& channel, const RecordReading& records);
-/// The set point of row `row` of a static run.
-Conditions set_point_of(const MeasuredRun& run, std::size_t row);
-
 /// Measured and predicted: against time for the first windows, or one against the other for a static set.
 core::Figure prediction_figure(const Prediction& prediction);
 void to_json(nlohmann::json& json, const Prediction& prediction);

@@ -5,7 +5,7 @@
 
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
-#include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 
 namespace underbody::dynamics {
 

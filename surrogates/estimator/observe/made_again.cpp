@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/no_limit.h"
-#include "core/text.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/estimator/observe/estimate.h"
 
 namespace underbody::estimator {

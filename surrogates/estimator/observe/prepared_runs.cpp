@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 
 namespace underbody::estimator {
 

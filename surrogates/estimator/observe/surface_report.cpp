@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/estimator/observe/estimate.h"
 #include "surrogates/estimator/observe/surface_bank.h"
 

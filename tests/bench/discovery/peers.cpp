@@ -5,6 +5,7 @@
 #include <set>
 
 #include "surrogates/dynamics/simulate/predict.h"
+#include "surrogates/dynamics/simulate/read_records.h"
 #include "tests/bench/discovery/peer_fits.h"
 
 namespace underbody::bench {
