@@ -1,6 +1,5 @@
 #include "cases/accept.h"
 
-#include <algorithm>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>

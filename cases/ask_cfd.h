@@ -1,7 +1,6 @@
 // CFD of one shape more: what it adds to the study and its [sweep], and what that costs.
 #pragma once
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>

@@ -1,7 +1,6 @@
 // A jet as an axis of a sweep or of a search: by its flow, or by the voltage of its pump.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "cases/step_results.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>

@@ -1,10 +1,8 @@
 // All results of a store by kind and name, to look up those of ten thousand cases.
 #pragma once
 
-#include <cstdint>
 #include <deque>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>

@@ -1,7 +1,6 @@
 // What is wrong with the files of a batch, said once where many have it alike.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <unordered_set>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "core/closed_form.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 

@@ -1,7 +1,5 @@
 #include "core/table_rows.h"
 
-#include <algorithm>
-
 #include "core/text.h"
 
 namespace underbody::core {

@@ -1,5 +1,4 @@
 // Static sets of others. Their channels are not the program's: what stands for what is said at each study.
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "cases/thesis/parts.h"
 #include "surrogates/estimator/model/linear_system.h"

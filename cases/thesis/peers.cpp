@@ -1,8 +1,6 @@
 // The data-driven model beside the models it replaces and the peers of today.
 #include "surrogates/estimator/model/peers.h"
 
-#include <cmath>
-
 #include "cases/thesis/parts.h"
 
 namespace underbody::thesis {

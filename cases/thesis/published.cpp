@@ -1,7 +1,5 @@
 #include "cases/thesis/published.h"
 
-#include <cmath>
-
 #include "surrogates/tables/fit/force_table.h"
 
 namespace underbody::thesis {

@@ -1,7 +1,6 @@
 // Points along lines at graded distances. Internal to the block mesher; any unit of length.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "core/error.h"
-#include "core/text.h"
 
 namespace underbody::geometry {
 

@@ -1,8 +1,6 @@
 // SHAPE -> watertight surface with exact sharp edges.
 #pragma once
 
-#include <optional>
-
 #include "core/progress.h"
 #include "geometry/body/body_shape.h"
 #include "geometry/mesh/surface_mesh.h"

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
 #include "core/text.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/exact_body.h"

@@ -1,7 +1,6 @@
 #include "geometry/body/patch_improver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <unordered_set>
 

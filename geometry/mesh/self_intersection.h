@@ -1,7 +1,6 @@
 // Do triangles of a surface run through each other? Exact answers (CGAL's predicates), a tree of boxes before them.
 #pragma once
 
-#include <optional>
 #include <utility>
 #include <vector>
 

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/text.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/mass_properties.h"
 #include "geometry/water/above_ground.h"

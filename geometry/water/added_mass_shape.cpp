@@ -1,7 +1,6 @@
 // Added mass of shapes and of surfaces, and its table against the gap.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
 #include "core/text.h"

@@ -4,7 +4,6 @@
 #include <vtkPointData.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 
 #include "core/inputs.h"

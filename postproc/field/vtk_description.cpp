@@ -11,8 +11,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/utf8.h"
-
 namespace underbody::postproc {
 
 namespace {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "core/progress.h"
 #include "postproc/field/field.h"

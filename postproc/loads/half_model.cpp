@@ -1,6 +1,5 @@
 #include "postproc/loads/half_model.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,8 +1,6 @@
 // Loads as JSON and as table rows; the keys are those of the interfaces.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/text.h"
 #include "postproc/field/problems_json.h"
 #include "postproc/loads/loads.h"
 

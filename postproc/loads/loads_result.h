@@ -1,7 +1,6 @@
 // What is asked of the loads on a body, and what comes of it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>

@@ -9,7 +9,6 @@
 #include <unordered_set>
 
 #include "core/batch_problems.h"
-#include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads/deviation.h"
 #include "postproc/loads/loads_parts.h"

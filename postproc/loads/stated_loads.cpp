@@ -1,7 +1,6 @@
 #include "postproc/loads/stated_loads.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/file.h"
 #include "core/text.h"

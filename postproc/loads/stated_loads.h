@@ -1,7 +1,6 @@
 // Forces that a solver states of its own run - force reports, monitors, OpenFOAM's forces - and the loads against them.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>

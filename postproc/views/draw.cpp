@@ -28,7 +28,6 @@
 #include <mutex>
 
 #include "core/error.h"
-#include "core/text.h"
 #include "core/virtual_display.h"
 #include "postproc/field/vector_math.h"
 #include "postproc/views/colours.h"

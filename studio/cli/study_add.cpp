@@ -1,6 +1,5 @@
 // underbody study add: cases for a study, or the beginning of one.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cases/add_cases.h"

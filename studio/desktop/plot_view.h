@@ -5,7 +5,6 @@
 #include <QPointer>
 #include <QWidget>
 #include <filesystem>
-#include <functional>
 
 #include "core/figure.h"
 

@@ -12,7 +12,6 @@
 #include <QPushButton>
 #include <QTableWidget>
 #include <algorithm>
-#include <set>
 
 #include "cases/case_loads.h"
 #include "cases/guess_pattern.h"

@@ -1,7 +1,6 @@
 // From fitted hypotheses to a verdict with probabilities: the part that both kinds of data share.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "surrogates/discovery/calibration.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "core/error.h"
-#include "core/text.h"
 
 namespace underbody::discovery {
 

@@ -2,7 +2,6 @@
 // when, and how much it matters. `bench_discovery --recalibrate` moves each and prints what changes.
 #pragma once
 
-#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>

@@ -1,6 +1,5 @@
 #include "surrogates/discovery/consequence.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/no_limit.h"

@@ -5,7 +5,6 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 
 #include "core/random.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "cases/add_measurement.h"
 #include "core/error.h"
 #include "core/file.h"

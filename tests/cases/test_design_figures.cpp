@@ -8,7 +8,6 @@
 #include "cases/design_figures.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/own_files.h"
 #include "surrogates/tables/search/sampling.h"
 
 namespace {

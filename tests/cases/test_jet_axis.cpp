@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "cases/design.h"
 #include "cases/jet_axis.h"
 #include "cases/study.h"
@@ -11,7 +9,6 @@
 #include "cases/sweep_parts.h"
 #include "core/error.h"
 #include "core/file.h"
-#include "core/own_files.h"
 
 namespace {
 

@@ -6,7 +6,6 @@
 #include "cases/study.h"
 #include "core/file.h"
 #include "core/table.h"
-#include "core/text.h"
 #include "surrogates/tables/fit/force_table.h"
 #include "tests/support/small_study.h"
 

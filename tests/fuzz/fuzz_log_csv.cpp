@@ -1,6 +1,5 @@
 // CSV as it comes, in one piece and in small ones. Only errors about the input may come out.
 #include <memory>
-#include <string>
 
 #include "surrogates/dynamics/logs/growing.h"
 #include "tests/fuzz/fuzz_log.h"

@@ -1,6 +1,5 @@
 // VTK's own files, surfaces and Tecplot: the ending that the content calls for, and then whatever importer takes it.
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "core/file.h"

@@ -2,10 +2,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
 
 #include "core/error.h"
 #include "core/file.h"

@@ -1,7 +1,6 @@
 // Surfaces into files and back; files that are wrong.
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 

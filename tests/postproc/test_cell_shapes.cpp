@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "core/random.h"
 #include "postproc/importers/mesh/cell_shapes.h"

@@ -5,10 +5,8 @@
 #include <vtkPolyData.h>
 
 #include <algorithm>
-#include <clocale>
 #include <cmath>
 #include <fstream>
-#include <functional>
 
 #include "core/file.h"
 #include "core/parallel.h"

@@ -3,8 +3,6 @@
 #include <vtkCellData.h>
 #include <vtkPointData.h>
 
-#include <fstream>
-
 #include "cgns_files.h"
 #include "core/file.h"
 #include "import_support.h"

@@ -1,7 +1,6 @@
 // The man pages say what the programs do: every command and option they name exists.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <regex>
 #include <set>
 

@@ -1,7 +1,6 @@
 // The bulk of a CSV file: rows of numbers and rows of indices, parsed once, straight to where they belong.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -1,6 +1,5 @@
 // EnSight Gold as Fluent, CFX and OpenFOAM write it. Read by ourselves: VTK's reader crashes on a truncated geometry.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>

@@ -2,7 +2,6 @@
 #include <vtkCellType.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "core/file.h"

@@ -1,10 +1,6 @@
 // Legacy Fluent files: sections into a face mesh and value blocks. The importer is in fluent_legacy_importer.cpp.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <optional>
-
 #include "postproc/importers/fluent/fluent_settings.h"
 #include "postproc/importers/fluent/fluent_text.h"
 #include "postproc/importers/mesh/face_mesh.h"

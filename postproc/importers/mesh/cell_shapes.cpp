@@ -1,6 +1,7 @@
 #include "postproc/importers/mesh/cell_shapes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace underbody::postproc {

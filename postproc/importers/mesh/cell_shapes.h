@@ -1,7 +1,6 @@
 // What kind of cell some faces make, in which order its nodes go, and how large it is.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -9,7 +9,6 @@
 #include <vtkTypeInt32Array.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <string>
 #include <utility>
 
 #include "postproc/field/field.h"

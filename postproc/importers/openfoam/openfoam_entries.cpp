@@ -1,5 +1,4 @@
 // Entries of OpenFOAM dictionaries: what they state is kept, and stands for "$name" further down.
-#include <algorithm>
 
 #include "core/file.h"
 #include "core/text.h"

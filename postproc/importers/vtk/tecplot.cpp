@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 
 #include "core/file.h"
 #include "core/text.h"

@@ -6,7 +6,6 @@
 #include <vtkSmartPointer.h>
 
 #include <filesystem>
-#include <utility>
 
 #include "core/error.h"
 #include "postproc/importers/linked_files.h"

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_error.h"

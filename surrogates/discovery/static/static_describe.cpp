@@ -1,6 +1,5 @@
 // What a static verdict is told with: error before and after, rivals, limits, and doubts about the data.
 #include <algorithm>
-#include <cmath>
 
 #include "core/no_limit.h"
 #include "core/text.h"

@@ -1,6 +1,5 @@
 // From fitted effects to a verdict for static sets: the gate, pairs, what they leave, and how stable the answer is.
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <set>

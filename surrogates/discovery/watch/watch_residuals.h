@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "surrogates/discovery/watch/watch_filter.h"

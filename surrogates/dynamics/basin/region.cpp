@@ -1,7 +1,6 @@
 #include "surrogates/dynamics/basin/region.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>

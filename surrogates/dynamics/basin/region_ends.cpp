@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "core/no_limit.h"
 #include "core/parallel.h"
-#include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"

@@ -4,7 +4,6 @@
 
 #include "core/no_limit.h"
 #include "core/parallel.h"
-#include "core/text.h"
 #include "core/told.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/basin/region_pitch_ends.h"

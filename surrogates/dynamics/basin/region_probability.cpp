@@ -1,7 +1,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/basin/region_parts.h"
 #include "surrogates/dynamics/model/force_error.h"

@@ -1,7 +1,6 @@
 // The numbers of a motion as C: what stands between the parts in exports/c. For the files of this folder only.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 

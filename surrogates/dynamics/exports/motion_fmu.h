@@ -1,9 +1,7 @@
 // The motion of a model as an FMU 2.0: states, derivatives, inputs, contact, for model exchange and co-simulation.
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

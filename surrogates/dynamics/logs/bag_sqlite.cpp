@@ -1,9 +1,6 @@
 // ROS 2 bags in SQLite: tables `topics`, `messages` and, since Iron, `message_definitions` (rosbag2_storage_sqlite3).
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/text.h"
 #include "surrogates/dynamics/logs/log_bytes.h"
 #include "surrogates/dynamics/logs/ros_message.h"

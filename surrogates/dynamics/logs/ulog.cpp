@@ -1,7 +1,6 @@
 // PX4 ULog, as documented in the PX4 user guide, "ULog File Format": a header, then messages of a size, a type and
 // their content.
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 

@@ -2,9 +2,7 @@
 // simulation, prediction, discovery, help and desktop then know it.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

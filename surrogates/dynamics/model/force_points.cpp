@@ -1,7 +1,6 @@
 #include "surrogates/dynamics/model/force_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/units.h"

@@ -1,7 +1,6 @@
 // The declared numbers of a model file, once: for reading, checking, listing and changing by name.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "surrogates/dynamics/model/model.h"

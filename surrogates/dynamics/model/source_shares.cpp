@@ -1,7 +1,5 @@
 #include "surrogates/dynamics/model/source_shares.h"
 
-#include <cstdint>
-
 namespace underbody::dynamics {
 
 namespace {

@@ -1,7 +1,5 @@
 #include "surrogates/dynamics/plant/pitch_effects.h"
 
-#include "core/text.h"
-
 namespace underbody::dynamics {
 
 namespace {

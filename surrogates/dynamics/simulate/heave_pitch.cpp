@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/no_limit.h"
-#include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 

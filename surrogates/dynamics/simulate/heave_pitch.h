@@ -7,7 +7,6 @@
 #include <cmath>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "core/text.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/heave_pitch_contact.h"

@@ -1,7 +1,6 @@
 // Holding a heading, a speed, a gap or a pitch with the jets: the wrench that feedback wants, allocated within limits.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "surrogates/dynamics/simulate/rigid_body.h"

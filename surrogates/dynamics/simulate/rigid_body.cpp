@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text.h"
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/plant/acting_jets.h"
 

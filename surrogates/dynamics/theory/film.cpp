@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
-
 namespace underbody::dynamics {
 
 namespace {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
 #include "core/text.h"
 #include "core/water.h"
 #include "surrogates/dynamics/linear/linear.h"

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/error.h"
 #include "surrogates/estimator/model/linear_system.h"
 
 namespace underbody::estimator {

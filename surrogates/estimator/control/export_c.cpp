@@ -1,7 +1,6 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <utility>
 
 #include "core/error.h"
 #include "core/hash.h"

@@ -1,6 +1,5 @@
 #include "surrogates/estimator/control/theory.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"

@@ -1,7 +1,6 @@
 // What samples say against themselves.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/text.h"
 #include "surrogates/estimator/model/augmented_model.h"

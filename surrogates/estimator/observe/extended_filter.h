@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "surrogates/estimator/model/training.h"

@@ -1,6 +1,4 @@
 // Evaluation of piecewise cubic grids: where a point lies, and the polynomials there.
-#include <algorithm>
-#include <cmath>
 
 #include "surrogates/tables/fit/grid.h"
 

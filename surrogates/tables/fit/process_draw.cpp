@@ -4,7 +4,6 @@
 // K^-1 (0 - f(points) - noise) (Matheron's rule; Wilson and others, Efficiently sampling functions from Gaussian
 // process posteriors, 2020).
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>

@@ -1,8 +1,6 @@
 #include "surrogates/tables/fit/process_form.h"
 
-#include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "core/no_limit.h"
 #include "core/text.h"

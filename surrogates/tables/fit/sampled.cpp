@@ -1,9 +1,7 @@
 #include "surrogates/tables/fit/sampled.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <utility>
 

@@ -1,7 +1,6 @@
 // Where a table has data: a yes or no for every cell of a coarse grid of its own, so that a controller can ask it too.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>

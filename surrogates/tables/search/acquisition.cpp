@@ -1,6 +1,5 @@
 #include "surrogates/tables/search/acquisition.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>

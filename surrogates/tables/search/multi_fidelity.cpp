@@ -1,7 +1,6 @@
 #include "surrogates/tables/search/multi_fidelity.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/text.h"
 
 namespace underbody::tables {
 

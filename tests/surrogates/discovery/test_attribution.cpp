@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "surrogates/discovery/attribution.h"
 
 using namespace underbody::discovery;

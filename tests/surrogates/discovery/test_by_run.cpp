@@ -1,7 +1,6 @@
 // A number that differs from run to run, though the rig is one: no effect shows it that is the same in all.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "make_data.h"

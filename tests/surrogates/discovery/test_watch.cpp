@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
 
 #include "core/error.h"
 #include "surrogates/discovery/watch/sequential_test.h"

@@ -1,8 +1,6 @@
 // Heave with feedback: its region, where it holds, and sweeps.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/linear/trim_error.h"
 #include "surrogates/dynamics/simulate/feedback.h"

@@ -1,9 +1,7 @@
 // Heave against closed forms: springs, drag, impact, memory, inputs.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 #include "core/text.h"
 #include "tests/surrogates/tables/exports_support.h"
 
