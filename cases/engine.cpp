@@ -306,8 +306,6 @@ void Engine::unpack(const std::string& name, const std::string& value) {
     add_picture(name, value.substr(end + 1));
 }
 
-std::string Engine::hash_of(const fs::path& file) { return states_.state_of({core::Input::Kind::content, file, {}}); }
-
 void Engine::add_document(const std::string& key, const std::string& json) {
     const std::lock_guard lock(mutex_);
     results.documents.emplace_back(key, json);

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -120,8 +119,6 @@ public:
     }
     /// Path of a file that results name so.
     [[nodiscard]] std::filesystem::path path_of(const std::string& named) const { return states_.path_of(named); }
-    /// Hash of a file's content, "absent" when there is none.
-    std::string hash_of(const std::filesystem::path& file);
 
     /// Folder of the report: exports and models are written beside it.
     [[nodiscard]] std::filesystem::path report_folder() const;

@@ -1,9 +1,6 @@
 #include "cases/measured/studies.h"
 
-#include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstdlib>
 #include <map>
 
 #include "cases/measured/foreign_table.h"
@@ -62,17 +59,6 @@ std::map<std::string, double> ball_masses(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-std::filesystem::path measured_folder(const std::filesystem::path& beside) {
-    const char* named = std::getenv("UNDERBODY_SHARED");
-    for (const std::filesystem::path& root :
-         {std::filesystem::path(named != nullptr ? named : ""), beside, std::filesystem::path("../shared")}) {
-        if (!root.empty() && std::filesystem::is_directory(root / "measured")) {
-            return root / "measured";
-        }
-    }
-    return {};
-}
 
 std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder, core::Progress& progress) {
     const ForeignTable drops = read_foreign(folder / "ball_drops" / "ball_drops.csv");

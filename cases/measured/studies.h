@@ -23,10 +23,6 @@ struct MeasuredStudy {
     discovery::Discovery found;
 };
 
-/// Where the measurements lie: $UNDERBODY_SHARED/measured, else ../shared/measured beside the sources; empty when
-/// missing.
-std::filesystem::path measured_folder(const std::filesystem::path& beside = {});
-
 /// Balls falling from a bridge: heave runs of a body without a force table, weight alone. One study a ball; for one
 /// that was not weighed forces are for a mass of 1 kg. Throws core::InputError when a file is not as its PROVENANCE.md
 /// says.

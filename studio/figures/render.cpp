@@ -222,11 +222,6 @@ std::string pdf(const core::Figure& figure, const PictureSize& size) {
 
 }  // namespace
 
-void start_drawing() {
-    const std::lock_guard lock(drawing);
-    start_application();
-}
-
 std::string render_png(const core::Figure& figure, const PictureSize& size) {
     check(size);
     Half half;

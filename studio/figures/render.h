@@ -42,7 +42,4 @@ std::string pretty_unit(const std::string& unit);
 /// "gap (mm)", or only the label when there is no unit.
 std::string axis_title(const std::string& label, const std::string& unit);
 
-/// Makes sure that Qt is up (see above). Pictures call it themselves; for others that need QImage with text.
-void start_drawing();
-
 }  // namespace underbody::studio

@@ -24,7 +24,7 @@ double probability_of(const discovery::Discovery& found, const std::string& name
     return sum;
 }
 
-std::filesystem::path folder() { return cases::measured_folder(test::shared_folder()); }
+std::filesystem::path folder() { return test::shared_folder() / "measured"; }
 
 }  // namespace
 

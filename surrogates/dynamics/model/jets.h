@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "surrogates/dynamics/model/model.h"
@@ -18,7 +17,6 @@ struct Wrench {
 };
 
 Vector3 cross(const Vector3& a, const Vector3& b);
-double dot(const Vector3& a, const Vector3& b);
 
 /// Sum of the thrusts and of r x F. One thrust a jet.
 Wrench jet_wrench(std::span<const Jet> jets, std::span<const double> thrust);
