@@ -268,6 +268,69 @@ void limit_from(const TomlTable& table, DesignSpec& spec) {
     spec.limit_places.push_back(table.place());
 }
 
+/// What is varied, and what follows it.
+void read_variables(const TomlTable& design, DesignSpec& spec) {
+    std::set<std::string> varied, tied;
+    for (const TomlTable& table : design.tables("vary")) {
+        spec.variables.push_back(variable_from(table));
+        if (!varied.insert(spec.variables.back().name).second) {
+            throw core::InputError("name", table.path_of("key") + ": " + spec.variables.back().name + " varies twice",
+                                   table.place("key"));
+        }
+    }
+    if (spec.variables.empty()) {
+        throw core::InputError("missing", "[design] varies nothing", design.place(),
+                               "[[design.vary]] key = \"protrusion.height\", from = \"1 mm\", to = \"3 mm\"");
+    }
+    for (const TomlTable& table : design.tables("tie")) {
+        spec.ties.push_back(geometry::tie_from(table));
+        const std::string& key = spec.ties.back().key;
+        if (varied.contains(key) || !tied.insert(key).second) {
+            throw core::InputError("name",
+                                   table.path_of("key") + ": " + key +
+                                       (varied.contains(key) ? " varies by itself, too" : " is tied twice"),
+                                   table.place("key"), "[[design.vary]] or one [[design.tie]] of it");
+        }
+    }
+}
+
+void read_fidelities(const TomlTable& design, DesignSpec& spec) {
+    std::set<std::string> names;
+    for (const TomlTable& table : design.tables("fidelity")) {
+        const FidelitySpec f = fidelity_from(table);
+        if (!names.insert(f.name).second) {
+            throw core::InputError("name", table.path_of("name") + ": there are two fidelities " + f.name,
+                                   table.place("name"));
+        }
+        spec.jet.check(f.mesh, design.place(spec.jet.quantity));
+        spec.fidelities.push_back(f);
+    }
+    if (spec.fidelities.empty()) {
+        spec.fidelities = {{"medium", {}, 1}};
+    }
+}
+
+/// What is wanted, and what must hold.
+void read_wishes(const TomlTable& design, DesignSpec& spec) {
+    std::set<std::string> objective_names, limit_names;
+    for (const TomlTable& table : design.tables("objective")) {
+        spec.objectives.push_back(objective_from(table, spec));
+        spec.objective_places.push_back(table.place());
+        check_name(objective_names, spec.objectives.back().response.name, "objectives", table.place());
+    }
+    for (const TomlTable& table : design.tables("limit")) {
+        limit_from(table, spec);
+        check_name(limit_names, spec.limits.back().response.name, "limits", table.place());
+    }
+    const TomlTable volume = design.table_or_empty("volume");
+    spec.least_volume = volume.quantity_or("at_least", "m^3", spec.least_volume);
+    spec.most_volume = volume.quantity_or("at_most", "m^3", spec.most_volume);
+    if (spec.least_volume > spec.most_volume) {
+        throw core::InputError("range", volume.path_of("at_least") + " is above at_most: no design can meet both",
+                               volume.place("at_least"));
+    }
+}
+
 }  // namespace
 
 std::vector<tables::SearchVariable> DesignSpec::all_variables() const {
@@ -306,58 +369,9 @@ DesignSpec read_design(const TomlTable& design, const std::filesystem::path& stu
                                design.place("kinematic_viscosity"), "kinematic_viscosity = \"1.0e-6 m^2/s\"");
     }
     spec.quantities = quantities_of(design);
-    std::set<std::string> varied, tied;
-    for (const TomlTable& table : design.tables("vary")) {
-        spec.variables.push_back(variable_from(table));
-        if (!varied.insert(spec.variables.back().name).second) {
-            throw core::InputError("name", table.path_of("key") + ": " + spec.variables.back().name + " varies twice",
-                                   table.place("key"));
-        }
-    }
-    if (spec.variables.empty()) {
-        throw core::InputError("missing", "[design] varies nothing", design.place(),
-                               "[[design.vary]] key = \"protrusion.height\", from = \"1 mm\", to = \"3 mm\"");
-    }
-    for (const TomlTable& table : design.tables("tie")) {
-        spec.ties.push_back(geometry::tie_from(table));
-        const std::string& key = spec.ties.back().key;
-        if (varied.contains(key) || !tied.insert(key).second) {
-            throw core::InputError("name",
-                                   table.path_of("key") + ": " + key +
-                                       (varied.contains(key) ? " varies by itself, too" : " is tied twice"),
-                                   table.place("key"), "[[design.vary]] or one [[design.tie]] of it");
-        }
-    }
-    std::set<std::string> names;
-    for (const TomlTable& table : design.tables("fidelity")) {
-        const FidelitySpec f = fidelity_from(table);
-        if (!names.insert(f.name).second) {
-            throw core::InputError("name", table.path_of("name") + ": there are two fidelities " + f.name,
-                                   table.place("name"));
-        }
-        spec.jet.check(f.mesh, design.place(spec.jet.quantity));
-        spec.fidelities.push_back(f);
-    }
-    if (spec.fidelities.empty()) {
-        spec.fidelities = {{"medium", {}, 1}};
-    }
-    std::set<std::string> objective_names, limit_names;
-    for (const TomlTable& table : design.tables("objective")) {
-        spec.objectives.push_back(objective_from(table, spec));
-        spec.objective_places.push_back(table.place());
-        check_name(objective_names, spec.objectives.back().response.name, "objectives", table.place());
-    }
-    for (const TomlTable& table : design.tables("limit")) {
-        limit_from(table, spec);
-        check_name(limit_names, spec.limits.back().response.name, "limits", table.place());
-    }
-    const TomlTable volume = design.table_or_empty("volume");
-    spec.least_volume = volume.quantity_or("at_least", "m^3", spec.least_volume);
-    spec.most_volume = volume.quantity_or("at_most", "m^3", spec.most_volume);
-    if (spec.least_volume > spec.most_volume) {
-        throw core::InputError("range", volume.path_of("at_least") + " is above at_most: no design can meet both",
-                               volume.place("at_least"));
-    }
+    read_variables(design, spec);
+    read_fidelities(design, spec);
+    read_wishes(design, spec);
     return spec;
 }
 

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "cases/openfoam_result.h"
@@ -207,31 +205,49 @@ void need_openfoam() {
     }
 }
 
+namespace {
+
+void check_case(const fs::path& folder) {
+    if (!fs::is_directory(folder) || !fs::is_regular_file(folder / "Allrun")) {
+        throw core::InputError("missing",
+                               fs::exists(folder) ? "there is no Allrun in this folder" : "there is no such folder",
+                               {folder.string(), {}, {}, {}},
+                               "'body domain' writes a case around a shape, from its gap on (option 'gap 5mm')");
+    }
+    if (!fs::is_regular_file(folder / "system" / "controlDict")) {
+        throw core::InputError("missing", "the case has no system/controlDict", {folder.string(), {}, {}, {}});
+    }
+}
+
+void need_programs(int cores) {
+    need_openfoam();
+    for (const char* program : {"mpirun", "decomposePar", "reconstructPar"}) {
+        if (cores > 1 && !find_program(program)) {
+            throw core::SystemError(
+                "missing", std::string("a case on several cores needs '") + program + "', which is not on the PATH", {},
+                "install it: apt install openfoam openmpi-bin");
+        }
+    }
+}
+
+/// Debian's OpenFOAM needs one variable and nothing sourced.
+std::vector<std::pair<std::string, std::string>> needed_environment() {
+    std::vector<std::pair<std::string, std::string>> environment;
+    if (std::getenv("WM_PROJECT_DIR") == nullptr) {
+        environment.emplace_back("WM_PROJECT_DIR", "/usr/share/openfoam");
+    }
+    return environment;
+}
+
+}  // namespace
+
 OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
     : folder_(std::move(folder)),
       start_(std::chrono::steady_clock::now()),
       cores_(std::max(1, cores)),
       stall_(hung_after()) {
-    const fs::path script = folder_ / "Allrun";
-    if (!fs::is_directory(folder_) || !fs::is_regular_file(script)) {
-        throw core::InputError("missing",
-                               fs::exists(folder_) ? "there is no Allrun in this folder" : "there is no such folder",
-                               {folder_.string(), {}, {}, {}},
-                               "'body domain' writes a case around a shape, from its gap on (option 'gap 5mm')");
-    }
-    if (!fs::is_regular_file(folder_ / "system" / "controlDict")) {
-        throw core::InputError("missing", "the case has no system/controlDict", {folder_.string(), {}, {}, {}});
-    }
-    need_openfoam();
-    if (cores > 1) {
-        for (const char* program : {"mpirun", "decomposePar", "reconstructPar"}) {
-            if (!find_program(program)) {
-                throw core::SystemError(
-                    "missing", std::string("a case on several cores needs '") + program + "', which is not on the PATH",
-                    {}, "install it: apt install openfoam openmpi-bin");
-            }
-        }
-    }
+    check_case(folder_);
+    need_programs(cores);
     lock_ = Lock::take(folder_ / ".underbody.lock", "solve");
     if (!lock_) {
         throw core::InputError(
@@ -239,11 +255,7 @@ OpenFoamRun::OpenFoamRun(fs::path folder, int lock, int cores)
             "the case is being solved by " + Lock::holder(folder_ / ".underbody.lock").value_or("another process"),
             {folder_.string(), {}, {}, {}}, "wait for it, or end it first");
     }
-    // Debian's OpenFOAM needs this one variable and nothing sourced.
-    std::vector<std::pair<std::string, std::string>> environment;
-    if (std::getenv("WM_PROJECT_DIR") == nullptr) {
-        environment.emplace_back("WM_PROJECT_DIR", "/usr/share/openfoam");
-    }
+    auto environment = needed_environment();
     put_together(folder_, environment);
     from_ = ready_to_go_on(folder_);
     if (!from_ && solves_anew(folder_)) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <unordered_set>
 
 #include "cases/code_version.h"
 #include "cases/engine.h"
@@ -89,16 +88,7 @@ private:
         page_.paragraph("Where these numbers come from: underbody study why STUDY \"" + result + "\"");
     }
 
-    void key_figures() {
-        std::vector<HtmlPage::Fact> facts;
-        if (!engine_.study.cases.empty()) {
-            facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
-        }
-        for (const auto& spec : engine_.study.verifications) {
-            if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
-                facts.push_back({percent(check->worst, 2), "largest difference from the solver's own " + spec.name});
-            }
-        }
+    void add_stable_gaps(std::vector<HtmlPage::Fact>& facts) {
         for (const auto& spec : engine_.study.tables) {
             const auto* table = find_result(engine_.results.tables, spec.name);
             if (table == nullptr || !spec.net_weight) {
@@ -113,6 +103,9 @@ private:
             facts.push_back({gaps.empty() ? "none" : gaps, "stable gaps by '" + spec.name + "' at a net weight of " +
                                                                shown(*spec.net_weight, "N", "N", 3) + " N"});
         }
+    }
+
+    void add_missing_effects(std::vector<HtmlPage::Fact>& facts) {
         for (const auto& spec : engine_.study.measurements) {
             if (const auto found = document("discovery/" + spec.name)) {
                 std::string names;
@@ -124,6 +117,9 @@ private:
                                  "missing in the model of '" + spec.name + "'"});
             }
         }
+    }
+
+    void add_claims(std::vector<HtmlPage::Fact>& facts) {
         std::map<std::string, int> counts;
         for (const char* part : {"thesis/thesis", "thesis/dynamics"}) {
             if (const auto thesis = document(part)) {
@@ -135,6 +131,21 @@ private:
         for (const auto& [verdict, count] : counts) {
             facts.push_back({std::to_string(count), "claims: " + verdict});
         }
+    }
+
+    void key_figures() {
+        std::vector<HtmlPage::Fact> facts;
+        if (!engine_.study.cases.empty()) {
+            facts.push_back({std::to_string(engine_.results.loads.rows()), "CFD cases"});
+        }
+        for (const auto& spec : engine_.study.verifications) {
+            if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
+                facts.push_back({percent(check->worst, 2), "largest difference from the solver's own " + spec.name});
+            }
+        }
+        add_stable_gaps(facts);
+        add_missing_effects(facts);
+        add_claims(facts);
         if (!facts.empty()) {
             page_.facts(facts);
         }
@@ -420,19 +431,7 @@ private:
         page_.paragraph("Its plan, surrogates, sensitivities and best designs: underbody design report STUDY");
     }
 
-    void trust() {
-        if (engine_.study.cases.empty()) {
-            return;
-        }
-        page_.section("How far to trust the numbers");
-        std::vector<std::string> remarks;
-        for (const auto& problem : engine_.results.gathered_warnings()) {
-            remarks.push_back(problem.place.file + ": " + problem.message);
-        }
-        if (!remarks.empty()) {
-            page_.paragraph("The loads themselves carry warnings; what stands on them carries these too:");
-            page_.list(remarks);
-        }
+    void verifications() {
         for (const auto& spec : engine_.study.verifications) {
             if (const auto* check = find_result(engine_.results.verifications, spec.name)) {
                 const std::string* document = engine_.results.document("verify/" + spec.name);
@@ -446,6 +445,9 @@ private:
                                 ". The files hold node values; face values would agree to rounding.");
             }
         }
+    }
+
+    void mesh_studies() {
         std::vector<std::vector<std::string>> rows;
         for (const auto& spec : engine_.study.mesh_uncertainties) {
             const auto* mesh = find_result(engine_.results.meshes, spec.name);
@@ -469,6 +471,23 @@ private:
                 show_figure("mesh/" + spec.name);
             }
         }
+    }
+
+    void trust() {
+        if (engine_.study.cases.empty()) {
+            return;
+        }
+        page_.section("How far to trust the numbers");
+        std::vector<std::string> remarks;
+        for (const auto& problem : engine_.results.gathered_warnings()) {
+            remarks.push_back(problem.place.file + ": " + problem.message);
+        }
+        if (!remarks.empty()) {
+            page_.paragraph("The loads themselves carry warnings; what stands on them carries these too:");
+            page_.list(remarks);
+        }
+        verifications();
+        mesh_studies();
         page_.paragraph(
             "Lift is that of steady RANS on a moving ground. Film models below a millimetre, the jet's voltage law and "
             "separate estimates of lift and drag are uncertain in ways no mesh study shows.");

@@ -85,27 +85,65 @@ std::map<std::string, double> load_errors(const Study& study, const StudyResults
     return errors;
 }
 
+namespace {
+
+/// A load of all cases and what is known of its error.
+struct ShownLoad {
+    Shown shown;
+    std::map<std::string, double> errors;  ///< by case; empty: of none
+};
+
+/// "12.3", with its error behind it where that of any case is known.
+void add_loads(const core::Table& loads, std::size_t row, const std::vector<ShownLoad>& forces,
+               std::vector<std::string>& cells) {
+    double size = 0;  // beside it rounding is nothing
+    for (const auto& force : forces) {
+        const core::Column* c = loads.find(force.shown.name);
+        size = std::max(size, c == nullptr || !std::isfinite(c->numbers[row]) ? 0.0 : std::abs(c->numbers[row]));
+    }
+    for (const auto& [shown, errors] : forces) {
+        const core::Column* c = loads.find(shown.name);
+        const double value = c == nullptr ? std::nan("") : c->numbers[row];
+        cells.push_back(std::abs(value) < 1e-9 * size ? "0" : number(core::convert(value, shown.from, shown.to)));
+        if (!errors.empty()) {
+            const auto known = errors.find(loads.text("case")[row]);
+            cells.push_back(known == errors.end() ? "-"
+                                                  : number(core::convert(known->second, shown.from, shown.to), 2));
+        }
+    }
+}
+
+/// How closed the surface was and how settled the solution.
+void add_quality(const core::Table& loads, std::size_t row, std::vector<std::string>& cells) {
+    const core::Column* closure = loads.find("closure");
+    // Rounding is no opening.
+    cells.push_back(closure == nullptr                       ? "-"
+                    : std::abs(closure->numbers[row]) < 1e-9 ? "0"
+                                                             : number(closure->numbers[row], 3));
+    const core::Column* settled = loads.find("settled");
+    cells.push_back(settled != nullptr && settled->is_text() ? settled->text[row] : "unknown");
+}
+
+}  // namespace
+
 ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) {
     const core::Table& loads = results.loads;
     const std::vector<Shown> conditions = condition_columns(loads);
-    const std::vector<Shown> forces = {{"lift_force", "N", "N", "lift (N)"},
-                                       {"drag_force", "N", "N", "drag (N)"},
-                                       {"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}};
-    std::vector<std::map<std::string, double>> errors;
+    std::vector<ShownLoad> forces;
     ReportTable table;
     table.header = {"case"};
     for (const auto& column : conditions) {
         table.header.push_back(column.title);
     }
-    for (const auto& force : forces) {
-        errors.push_back(load_errors(study, results, force.name));
+    for (const Shown& force : {Shown{"lift_force", "N", "N", "lift (N)"}, Shown{"drag_force", "N", "N", "drag (N)"},
+                               Shown{"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}}) {
+        forces.push_back({force, load_errors(study, results, force.name)});
         table.header.push_back(force.title);
-        if (!errors.back().empty()) {
+        if (!forces.back().errors.empty()) {
             table.header.push_back("± (" + force.to + ")");
         }
     }
-    table.header.emplace_back("closure");
-    table.header.emplace_back("solution");
+    table.header.insert(table.header.end(), {"closure", "solution"});
     std::unordered_set<std::string> warned;
     for (const auto& one : results.case_loads) {
         if (!one.warnings.empty()) {
@@ -122,30 +160,8 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
             const core::Column& c = *loads.find(column.name);
             cells.push_back(c.is_text() ? c.text[row] : number(core::convert(c.numbers[row], column.from, column.to)));
         }
-        double size = 0;  // beside it rounding is nothing
-        for (const auto& force : forces) {
-            const core::Column* c = loads.find(force.name);
-            size = std::max(size, c == nullptr || !std::isfinite(c->numbers[row]) ? 0.0 : std::abs(c->numbers[row]));
-        }
-        for (std::size_t i = 0; i < forces.size(); ++i) {
-            const core::Column* c = loads.find(forces[i].name);
-            const double value = c == nullptr ? std::nan("") : c->numbers[row];
-            cells.push_back(std::abs(value) < 1e-9 * size ? "0"
-                                                          : number(core::convert(value, forces[i].from, forces[i].to)));
-            if (!errors[i].empty()) {
-                const auto known = errors[i].find(name);
-                cells.push_back(known == errors[i].end()
-                                    ? "-"
-                                    : number(core::convert(known->second, forces[i].from, forces[i].to), 2));
-            }
-        }
-        const core::Column* closure = loads.find("closure");
-        // Rounding is no opening.
-        cells.push_back(closure == nullptr                       ? "-"
-                        : std::abs(closure->numbers[row]) < 1e-9 ? "0"
-                                                                 : number(closure->numbers[row], 3));
-        const core::Column* settled = loads.find("settled");
-        cells.push_back(settled != nullptr && settled->is_text() ? settled->text[row] : "unknown");
+        add_loads(loads, row, forces, cells);
+        add_quality(loads, row, cells);
         if (!warned.empty()) {
             cells.emplace_back(warned.contains(name) ? "see the warnings" : "");
         }

@@ -116,19 +116,72 @@ double resultant(const core::Table& table, std::size_t row) {
     return std::sqrt(squares);
 }
 
+/// The values of a verification, one by one, and what they come to.
+class Comparison {
+public:
+    Comparison(const VerifySpec& spec, const core::Table& loads, const core::Table& report)
+        : spec_(spec), loads_(loads), report_(report) {}
+
+    void take(std::size_t mine, std::size_t theirs, const postproc::LoadScale& scale) {
+        for (const auto& quantity : spec_.quantities) {
+            take(quantity, mine, theirs, scale);
+        }
+    }
+
+    [[nodiscard]] nlohmann::json result() && {
+        return {{"rows", std::move(rows_)},    {"worst", worst_},     {"worst_case", worst_case_},
+                {"failed", failed_},           {"excused", excused_}, {"excused_worst", excused_worst_},
+                {"tolerance", spec_.tolerance}};
+    }
+
+private:
+    void take(const std::string& quantity, std::size_t mine, std::size_t row, const postproc::LoadScale& scale) {
+        const double theirs = report_.numbers(quantity)[row];
+        const double ours = loads_.numbers(quantity)[mine];
+        const bool moment = quantity.ends_with("_moment");
+        const double error = postproc::deviation(ours, theirs, moment, scale);
+        const double size = postproc::load_measure(ours, theirs, moment, scale);
+        // The field is the last iteration, the report the mean of many: what a run swings by is no error of ours.
+        const auto* scatter = report_.find(quantity + "_scatter");
+        const double swing =
+            scatter != nullptr && std::isfinite(scatter->numbers[row]) ? 2 * scatter->numbers[row] / size : 0;
+        const std::string& name = loads_.text("case")[mine];
+        rows_.push_back({{"case", name},
+                         {"quantity", quantity},
+                         {"ours", ours},
+                         {"solver", theirs},
+                         {"error", error},
+                         {"swing", swing}});
+        const bool fails = !(error <= spec_.tolerance + swing);  // NaN fails too
+        failed_ += fails ? 1 : 0;
+        if (!fails && error > spec_.tolerance) {
+            ++excused_;
+            excused_worst_ = std::max(excused_worst_, error);
+        }
+        if (!(error - swing <= worst_)) {
+            worst_ = error - swing;
+            worst_case_ = name + ", " + quantity;
+        }
+    }
+
+    const VerifySpec& spec_;
+    const core::Table &loads_, &report_;
+    nlohmann::json rows_ = nlohmann::json::array();
+    double worst_ = 0;
+    std::string worst_case_;
+    std::size_t failed_ = 0, excused_ = 0;
+    double excused_worst_ = 0;
+};
+
 nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::Table& report) {
     const core::Table& loads = engine.results.loads;
     const auto* lengths = loads.find("reference_length");
-    nlohmann::json rows = nlohmann::json::array();
-    double worst = 0;
-    std::string worst_case;
-    std::size_t failed = 0, excused = 0;
-    double excused_worst = 0;
     const Rows rows_of_loads(loads, report);
     std::unordered_set<std::string> chosen;
     for (const Case* entry : engine.study.select(spec.where)) {
         chosen.insert(entry->name);
     }
+    Comparison comparison(spec, loads, report);
     for (std::size_t row = 0; row < report.rows(); ++row) {
         const auto mine = rows_of_loads.find(row);
         if (!mine || !chosen.contains(loads.text("case")[*mine])) {
@@ -136,43 +189,9 @@ nlohmann::json verify(const Engine& engine, const VerifySpec& spec, const core::
         }
         const double length =
             lengths != nullptr ? lengths->numbers[*mine] : engine.study.reference.number("length").value_or(1);
-        const postproc::LoadScale scale = postproc::load_scale(resultant(loads, *mine), resultant(report, row), length);
-        for (const auto& quantity : spec.quantities) {
-            const double theirs = report.numbers(quantity)[row];
-            const double ours = loads.numbers(quantity)[*mine];
-            const bool moment = quantity.ends_with("_moment");
-            const double error = postproc::deviation(ours, theirs, moment, scale);
-            const double size = postproc::load_measure(ours, theirs, moment, scale);
-            // The field is the last iteration, the report the mean of many: what a run swings by is no error of ours.
-            const auto* scatter = report.find(quantity + "_scatter");
-            const double swing =
-                scatter != nullptr && std::isfinite(scatter->numbers[row]) ? 2 * scatter->numbers[row] / size : 0;
-            const std::string name = loads.text("case")[*mine];
-            rows.push_back({{"case", name},
-                            {"quantity", quantity},
-                            {"ours", ours},
-                            {"solver", theirs},
-                            {"error", error},
-                            {"swing", swing}});
-            const bool fails = !(error <= spec.tolerance + swing);  // NaN fails too
-            failed += fails ? 1 : 0;
-            if (!fails && error > spec.tolerance) {
-                ++excused;
-                excused_worst = std::max(excused_worst, error);
-            }
-            if (!(error - swing <= worst)) {
-                worst = error - swing;
-                worst_case = name + ", " + quantity;
-            }
-        }
+        comparison.take(*mine, row, postproc::load_scale(resultant(loads, *mine), resultant(report, row), length));
     }
-    return {{"rows", rows},
-            {"worst", worst},
-            {"worst_case", worst_case},
-            {"failed", failed},
-            {"excused", excused},
-            {"excused_worst", excused_worst},
-            {"tolerance", spec.tolerance}};
+    return std::move(comparison).result();
 }
 
 }  // namespace

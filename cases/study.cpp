@@ -1,9 +1,7 @@
 #include "cases/study.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -508,6 +506,46 @@ VerifySpec read_verification(const TomlTable& table, std::set<std::string>& take
     return spec;
 }
 
+/// What is made of the cases.
+void read_steps(Study& study, const TomlTable& root) {
+    std::set<std::string> pictures;
+    for (const auto& table : root.tables("picture")) {
+        study.pictures.push_back(read_picture(table, pictures));
+    }
+    std::set<std::string> meshes;
+    for (const auto& table : root.tables("mesh_uncertainty")) {
+        study.mesh_uncertainties.push_back(read_mesh(table, meshes));
+    }
+    std::set<std::string> tables;
+    for (const auto& table : root.tables("table")) {
+        study.tables.push_back(read_table(table, tables, study));
+    }
+    std::set<std::string> regions;
+    for (const auto& table : root.tables("region")) {
+        study.regions.push_back(read_region(table, regions, study));
+    }
+    std::set<std::string> measurements;
+    for (const auto& table : root.tables("measurement")) {
+        MeasurementSpec spec;
+        spec.name = unique_name(table, measurements);
+        spec.model = table.file("model");
+        spec.data = table.file("data");
+        spec.discover = table.boolean_or("discover", false);
+        study.measurements.push_back(std::move(spec));
+    }
+    study.thesis = root.boolean_or("thesis", false);
+    study.thesis_dynamics = root.boolean_or("thesis_dynamics", false);
+    std::set<std::string> verifications;
+    for (const auto& table : root.tables("verify")) {
+        study.verifications.push_back(read_verification(table, verifications));
+    }
+    std::set<std::string> comparisons;
+    for (const auto& table : root.tables("compare")) {
+        study.comparisons.push_back({unique_name(table, comparisons), required_strings(table, "tables")});
+        check_tables(study, table, "tables", study.comparisons.back().tables);
+    }
+}
+
 }  // namespace
 
 fs::path folder_of(const fs::path& path) {
@@ -558,42 +596,7 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     }
     tell_names_apart(study.cases, study.folder());
     sort_by_file(study.cases);
-    std::set<std::string> pictures;
-    for (const auto& table : root.tables("picture")) {
-        study.pictures.push_back(read_picture(table, pictures));
-    }
-    std::set<std::string> meshes;
-    for (const auto& table : root.tables("mesh_uncertainty")) {
-        study.mesh_uncertainties.push_back(read_mesh(table, meshes));
-    }
-    std::set<std::string> tables;
-    for (const auto& table : root.tables("table")) {
-        study.tables.push_back(read_table(table, tables, study));
-    }
-    std::set<std::string> regions;
-    for (const auto& table : root.tables("region")) {
-        study.regions.push_back(read_region(table, regions, study));
-    }
-    std::set<std::string> measurements;
-    for (const auto& table : root.tables("measurement")) {
-        MeasurementSpec spec;
-        spec.name = unique_name(table, measurements);
-        spec.model = table.file("model");
-        spec.data = table.file("data");
-        spec.discover = table.boolean_or("discover", false);
-        study.measurements.push_back(std::move(spec));
-    }
-    study.thesis = root.boolean_or("thesis", false);
-    study.thesis_dynamics = root.boolean_or("thesis_dynamics", false);
-    std::set<std::string> verifications;
-    for (const auto& table : root.tables("verify")) {
-        study.verifications.push_back(read_verification(table, verifications));
-    }
-    std::set<std::string> comparisons;
-    for (const auto& table : root.tables("compare")) {
-        study.comparisons.push_back({unique_name(table, comparisons), required_strings(table, "tables")});
-        check_tables(study, table, "tables", study.comparisons.back().tables);
-    }
+    read_steps(study, root);
     root.finish();
     return study;
 }

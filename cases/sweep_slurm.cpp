@@ -293,6 +293,34 @@ bool SlurmQueue::has_any(const SlurmClaim& claim) {
     return tasks && !tasks->empty();
 }
 
+namespace {
+
+void write_array(const Study& study, const SlurmSubmission& what, const Claimed& claimed, std::size_t before,
+                 SlurmArray& array) {
+    const std::string number = before == 0 ? "" : "-" + std::to_string(before + 1);
+    array.script =
+        what.script.parent_path() / (what.script.stem().string() + number + what.script.extension().string());
+    core::write_file(array.script, script_text(study, what, claimed.submission, array.names));
+}
+
+/// After those before it; its cases are free again where it fails.
+void submit_array(const SlurmSubmission& what, Claimed& claimed, const std::vector<SlurmArray>& before,
+                  SlurmArray& array, core::Progress& progress) {
+    std::vector<std::string> arguments;
+    if (what.settings.throttle > 0 && !before.empty()) {
+        arguments.push_back("--dependency=afterany:" + before.back().job);
+    }
+    try {
+        array.job = submitted(array.script, arguments, before.size(), progress);
+    } catch (const core::SystemError&) {
+        claimed.release();
+        throw;
+    }
+    claimed.write_job(array.job);
+}
+
+}  // namespace
+
 SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::Progress& progress) {
     if (!study.sweep) {
         return (void)wanted_cases(study, {}, progress), SlurmSweep{};  // says that there is none
@@ -333,22 +361,9 @@ SlurmSweep submit_sweep(const Study& study, const SlurmSubmission& what, core::P
         if (array.names.empty()) {
             continue;
         }
-        const std::string number = arrays.empty() ? "" : "-" + std::to_string(arrays.size() + 1);
-        array.script =
-            what.script.parent_path() / (what.script.stem().string() + number + what.script.extension().string());
-        core::write_file(array.script, script_text(study, what, claimed.submission, array.names));
+        write_array(study, what, claimed, arrays.size(), array);
         if (sbatch) {
-            std::vector<std::string> arguments;
-            if (what.settings.throttle > 0 && !arrays.empty()) {
-                arguments.push_back("--dependency=afterany:" + arrays.back().job);
-            }
-            try {
-                array.job = submitted(array.script, arguments, arrays.size(), progress);
-            } catch (const core::SystemError&) {
-                claimed.release();
-                throw;
-            }
-            claimed.write_job(array.job);
+            submit_array(what, claimed, arrays, array, progress);
             jobs.insert(array.job);
         }
         arrays.push_back(std::move(array));
