@@ -200,6 +200,12 @@ void MeasuredBody::advance(std::size_t k, MotionState& y, ContactState& bearing,
     }
 }
 
+/// Upright, as simulate_body asks of a start: heading and yaw lose their meaning where the body stands on its nose.
+bool MeasuredBody::goes_on(const MotionState& y) const {
+    constexpr double upright = 1.5;  // rad
+    return std::abs(y[nose]) < upright;
+}
+
 double MeasuredBody::reading(std::size_t sample, std::size_t state, const MotionState& y) const {
     const HeaveTerms& terms = body_.vertical().terms;
     switch (state) {

@@ -23,6 +23,7 @@ public:
     }
     /// In steps of at most 20 ms.
     void advance(std::size_t k, MotionState& y, ContactState& bearing, const MotionLoads& loads) override;
+    [[nodiscard]] bool goes_on(const MotionState& y) const override;
     [[nodiscard]] double reading(std::size_t sample, std::size_t state, const MotionState& y) const override;
     [[nodiscard]] double delay(std::size_t state) const override;
     void load_rates(const MotionState& y, std::array<MotionState, most_loads>& rates) const override;

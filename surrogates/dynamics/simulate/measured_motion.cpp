@@ -74,14 +74,31 @@ bool column_moves(const MeasuredRun& run, const std::string& column) {
     return high > low;
 }
 
-std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end) {
+std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end,
+                                     bool* lost) {
     std::vector<MotionState> motion{state};
     motion.reserve(end - from + 1);
     MotionState y = state;
     ContactState bearing = ContactState::free;
+    bool goes_on = run.goes_on(y);
     for (std::size_t k = from; k < end; ++k) {
-        run.advance(k, y, bearing, {});
+        MotionState next = y;
+        try {
+            if (goes_on) {
+                run.advance(k, next, bearing, {});
+            }
+        } catch (const core::Error& error) {
+            if (error.kind() != "contact") {
+                throw;
+            }
+            goes_on = false;
+        }
+        goes_on = goes_on && run.goes_on(next);
+        y = goes_on ? next : y;
         motion.push_back(y);
+    }
+    if (lost != nullptr) {
+        *lost = !goes_on;
     }
     return motion;
 }
@@ -230,7 +247,7 @@ std::vector<MotionWindow> predict_windows(MeasuredMotion& run, double horizon, d
         const std::optional<MotionState> state = fitted_state(run, run.readings(), window.from, window.start);
         if (state) {
             window.state = *state;
-            window.motion = motion_from(run, *state, window.from, window.end);
+            window.motion = motion_from(run, *state, window.from, window.end, &window.lost);
             windows.push_back(std::move(window));
         }
     }

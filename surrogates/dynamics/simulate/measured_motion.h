@@ -83,6 +83,9 @@ public:
     virtual void rate(std::size_t k, double t, const MotionState& y, MotionState& dydt, const MotionLoads& loads) = 0;
     /// From sample k to the next, through contact; `bearing` is where it stands, and then.
     virtual void advance(std::size_t k, MotionState& y, ContactState& bearing, const MotionLoads& loads) = 0;
+    /// False where the equations of the motion end: a body on its nose, or a contact that no force holds. What is
+    /// predicted stands still there.
+    [[nodiscard]] virtual bool goes_on(const MotionState& /*y*/) const { return true; }
     /// What the sensor of a state reads at a sample.
     [[nodiscard]] virtual double reading(std::size_t sample, std::size_t state, const MotionState& y) const = 0;
     /// s: how late the reading of a place is, to first order in its rate.
@@ -173,11 +176,13 @@ struct MotionWindow {
     std::size_t from = 0, start = 0, end = 0;
     MotionState state{};              ///< at `from`
     std::vector<MotionState> motion;  ///< at from..end
+    bool lost = false;                ///< it ended before (MeasuredMotion::goes_on)
     [[nodiscard]] const MotionState& at(std::size_t sample) const { return motion[sample - from]; }
 };
 
-/// The motion from sample `from` to `end`.
-std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end);
+/// The motion from sample `from` to `end`; `lost` (may be null): whether it ended before.
+std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end,
+                                     bool* lost = nullptr);
 
 /// The state at `from` whose motion fits these readings from..start best, in units of their noise; nothing later is
 /// looked at. Nothing where the places were not read often enough.

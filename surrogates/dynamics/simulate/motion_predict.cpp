@@ -44,7 +44,7 @@ void check_motion(const std::vector<MotionRunPrediction>& all, const Model& mode
         out.windows += all[r].windows.size();
         const MotionShape& shape = all[r].run->shape();
         for (const MotionWindow& window : all[r].windows) {
-            bool away = false;
+            bool away = window.lost;
             for (std::size_t k = window.start; k <= window.end; ++k) {
                 const MotionState& y = window.at(k);
                 if (!std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); })) {

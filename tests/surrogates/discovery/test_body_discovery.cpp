@@ -261,6 +261,20 @@ TEST_F(BodyRuns, ShorterThanTheHorizonArePredictedOverAQuarter) {
     EXPECT_THAT(found.remarks.back().message, testing::HasSubstr("predicted over 0.39 s"));
 }
 
+// A model so wrong that its body tips over tells that it is wrong, not that nothing can be predicted.
+TEST_F(BodyRuns, AModelThatTipsOverRunsAway) {
+    const dynamics::Measurements data = test::body_rig_runs({}, 2, 61);
+    for (const double height : {-0.005, -0.05}) {
+        model_.vehicle.buoyancy_height = height;
+        const dynamics::Prediction found = dynamics::predict(model_, data);
+        EXPECT_GT(found.diverged, found.windows / 2) << height;
+        EXPECT_THAT(found.remarks.back().message, testing::HasSubstr("away from every bound"));
+        for (const dynamics::ChannelError& channel : found.channels) {
+            EXPECT_LT(channel.in_noise, 1e4) << channel.name;
+        }
+    }
+}
+
 TEST_F(BodyRuns, SayWhatTheyLackAndWhatIsLeftOut) {
     dynamics::Measurements data = test::body_rig_runs({}, 3, 63);
     core::Table table;
