@@ -83,6 +83,38 @@ double structure_left(const SmoothFit& rest, double explained) {
     return left / std::max(left + std::max(explained, 0.0), least_gain);
 }
 
+namespace {
+
+/// Chances of "none", of "unknown" and of each name, which share what is between these; `left`: of the structure;
+/// `any`: a name has something to show.
+void share_out(double gate_p, const SmoothFit& rest, double left, bool any, const Calibration& calibration,
+               Attribution& result) {
+    double total = 0;
+    for (const Attribution::Share& share : result.shares) {
+        total += share.probability;
+    }
+    // a smooth step between the two verdicts: at the limits above the odds are even
+    double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));
+    if (rest.p > calibration.unknown_p) {
+        unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
+    }
+    result.none_probability =
+        gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
+    result.unknown_probability = (1 - result.none_probability) * unknown;
+    for (Attribution::Share& share : result.shares) {
+        share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
+    }
+    if (!any) {  // no name has anything to show: what they would share goes to what is left
+        double& heir = gate_p >= calibration.gate ? result.none_probability : result.unknown_probability;
+        for (Attribution::Share& share : result.shares) {
+            heir += share.probability * (1 - std::exp(-no_finding));
+            share.probability *= std::exp(-no_finding);
+        }
+    }
+}
+
+}  // namespace
+
 Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double gate_p, const SmoothFit& rest,
                       const Calibration& calibration) {
     Attribution result;
@@ -105,30 +137,9 @@ Attribution attribute(const std::vector<FittedHypothesis>& hypotheses, double ga
     }
     const FittedHypothesis& best = hypotheses[result.chosen];
     result.shares = shares_by_names(hypotheses, best, finding, any, calibration);
-    double total = 0;
-    for (const Attribution::Share& share : result.shares) {
-        total += share.probability;
-    }
     const double left = structure_left(rest, best.explained);
     const bool unexplained = rest.p < calibration.unknown_p && left > calibration.unknown_share;
-    // a smooth step between the two verdicts: at the limits above the odds are even
-    double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));
-    if (rest.p > calibration.unknown_p) {
-        unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
-    }
-    result.none_probability =
-        gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
-    result.unknown_probability = (1 - result.none_probability) * unknown;
-    for (Attribution::Share& share : result.shares) {
-        share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
-    }
-    if (!any) {  // no name has anything to show: what they would share goes to what is left
-        double& heir = gate_p >= calibration.gate ? result.none_probability : result.unknown_probability;
-        for (Attribution::Share& share : result.shares) {
-            heir += share.probability * (1 - std::exp(-no_finding));
-            share.probability *= std::exp(-no_finding);
-        }
-    }
+    share_out(gate_p, rest, left, any, calibration, result);
     if (gate_p >= calibration.gate) {
         result.verdict = "none";
     } else {

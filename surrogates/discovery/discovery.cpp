@@ -131,45 +131,38 @@ nlohmann::json to_json(const Consequence& consequence) {
     return json;
 }
 
-}  // namespace
+nlohmann::json to_json(const DetectionLimit& limit) {
+    return {{"name", limit.name}, {"parameter", limit.parameter}, {"value", number(limit.value)}, {"unit", limit.unit}};
+}
 
-nlohmann::json to_json(const Discovery& d) {
-    nlohmann::json json;
-    json["verdict"] = d.verdict;
-    json["sentence"] = d.sentence;
-    json["effects"] = nlohmann::json::array();
-    for (const FoundEffect& effect : d.effects) {
-        json["effects"].push_back(to_json(effect));
+template <typename T>
+nlohmann::json list_of(const std::vector<T>& all) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const T& one : all) {
+        list.push_back(to_json(one));
     }
-    json["alternatives"] = nlohmann::json::array();
-    for (const FoundEffect& effect : d.alternatives) {
-        json["alternatives"].push_back(to_json(effect));
-        json["alternatives"].back()["told_apart_by"] = effect.told_apart_by;
+    return list;
+}
+
+/// "error", "errors" and "rest": what the model misses, before and after.
+void add_errors(const Discovery& d, nlohmann::json& json) {
+    if (d.error.empty()) {
+        return;
     }
-    json["none_probability"] = d.none_probability;
-    json["depends_on"] = d.depends_on;
-    json["gate"] = {{"p", d.gate}};
-    json["stability"] = d.stability;
-    nlohmann::json& noise = json["noise"] = nlohmann::json::object();
-    for (const auto& [channel, used] : d.noise) {
-        noise[channel] = {
-            {"value", used.value}, {"unit", used.unit}, {"from", used.from}, {"estimated", number(used.estimated)}};
-    }
-    if (!d.error.empty()) {
-        json["error"] = to_json(d.error.front());
-        json["error"]["held_out"] = d.held_out;
-        json["errors"] = nlohmann::json::array();
-        for (const ErrorChange& change : d.error) {
-            json["errors"].push_back(to_json(change));
-        }
-    }
-    if (!d.error.empty() && d.rest.twins > 0) {
+    json["error"] = to_json(d.error.front());
+    json["error"]["held_out"] = d.held_out;
+    json["errors"] = list_of(d.error);
+    if (d.rest.twins > 0) {
         const double unit = d.error.front().noise > 0 ? d.error.front().noise : 1;
         json["rest"] = {{"is_noise", d.rest.is_noise},
                         {"unexplained_in_noise", d.rest.is_noise ? 0.0 : d.rest.unexplained / unit},
                         {"twins_in_noise", d.rest.twins / unit},
                         {"depends_on", d.rest.depends_on}};
     }
+}
+
+/// What only some data sets have.
+void add_particulars(const Discovery& d, nlohmann::json& json) {
     if (d.motion != "heave") {
         json["motion"] = d.motion;
     }
@@ -189,21 +182,39 @@ nlohmann::json to_json(const Discovery& d) {
                                   {"runs", d.by_run->runs},  {"value", d.by_run->value},
                                   {"sigma", d.by_run->sigma}};
     }
-    json["detection_limits"] = nlohmann::json::array();
-    for (const DetectionLimit& limit : d.limits) {
-        json["detection_limits"].push_back({{"name", limit.name},
-                                            {"parameter", limit.parameter},
-                                            {"value", number(limit.value)},
-                                            {"unit", limit.unit}});
-    }
-    json["consequence"] = to_json(d.consequence);
-    if (d.made_again) {
-        json["consequence"].update(*d.made_again);
-    }
     if (d.placebo.twins > 0) {
         json["placebo"] = {{"twins", d.placebo.twins},
                            {"false_alarms", d.placebo.alarms},
                            {"error_after_over_before", d.placebo.error_ratio}};
+    }
+}
+
+}  // namespace
+
+nlohmann::json to_json(const Discovery& d) {
+    nlohmann::json json;
+    json["verdict"] = d.verdict;
+    json["sentence"] = d.sentence;
+    json["effects"] = list_of(d.effects);
+    json["alternatives"] = list_of(d.alternatives);
+    for (std::size_t i = 0; i < d.alternatives.size(); ++i) {
+        json["alternatives"][i]["told_apart_by"] = d.alternatives[i].told_apart_by;
+    }
+    json["none_probability"] = d.none_probability;
+    json["depends_on"] = d.depends_on;
+    json["gate"] = {{"p", d.gate}};
+    json["stability"] = d.stability;
+    nlohmann::json& noise = json["noise"] = nlohmann::json::object();
+    for (const auto& [channel, used] : d.noise) {
+        noise[channel] = {
+            {"value", used.value}, {"unit", used.unit}, {"from", used.from}, {"estimated", number(used.estimated)}};
+    }
+    add_errors(d, json);
+    add_particulars(d, json);
+    json["detection_limits"] = list_of(d.limits);
+    json["consequence"] = to_json(d.consequence);
+    if (d.made_again) {
+        json["consequence"].update(*d.made_again);
     }
     json["next_experiment"] = d.next_experiment;
     json["next_experiment_power"] = d.next_power;

@@ -215,22 +215,7 @@ void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
     }
 }
 
-}  // namespace
-
-std::string report_html(const Discovery& d, const dynamics::Model& before, const dynamics::Measurements& data,
-                        const FigureRenderer& renderer) {
-    core::HtmlPage page(headline(d),
-                        before.name + " against " + (data.title.empty() ? data.folder.string() : data.title));
-    page.paragraph(d.sentence);
-    add_facts(page, d);
-    const auto serious = std::count_if(d.problems.begin(), d.problems.end(), [](const core::Problem& problem) {
-        return problem.severity != core::Problem::Severity::note;
-    });
-    for (const core::Problem& problem : d.problems) {
-        if (problem.severity != core::Problem::Severity::note) {
-            page.warning(problem.message);
-        }
-    }
+void add_pictures(core::HtmlPage& page, const Discovery& d, const FigureRenderer& renderer) {
     std::vector<core::HtmlPage::Picture> pictures;
     for (const core::Figure& figure : d.figures) {
         if (renderer) {
@@ -238,27 +223,32 @@ std::string report_html(const Discovery& d, const dynamics::Model& before, const
         }
     }
     page.pictures(pictures);
-    add_rivals(page, d);
-    add_error(page, d);
-    add_consequence(page, d.consequence);
-    add_made_again(page, d);
+}
+
+void add_next_experiment(core::HtmlPage& page, const Discovery& d) {
     page.section("The next experiment");
     page.paragraph(d.next_experiment);
     if (d.next_set_points.rows() > 0) {
         page.link("next-experiment.csv",
                   "next-experiment.csv: " + std::to_string(d.next_set_points.rows()) + " rows in the order to follow");
     }
-    if (serious < static_cast<std::ptrdiff_t>(d.problems.size())) {
-        page.section("Remarks on the data");
-        std::vector<std::string> notes;
-        for (const core::Problem& problem : d.problems) {
-            if (problem.severity == core::Problem::Severity::note) {
-                notes.push_back(problem.message);
-            }
+}
+
+/// What only tells, after what warns.
+void add_notes(core::HtmlPage& page, const Discovery& d) {
+    std::vector<std::string> notes;
+    for (const core::Problem& problem : d.problems) {
+        if (problem.severity == core::Problem::Severity::note) {
+            notes.push_back(problem.message);
         }
+    }
+    if (!notes.empty()) {
+        page.section("Remarks on the data");
         page.list(notes);
     }
-    add_noise_and_limits(page, d);
+}
+
+void add_method(core::HtmlPage& page) {
     page.section("How it was decided");
     page.list({"Runs or set points were set aside before anything was fitted; the errors above are from them alone.",
                "The gate asks whether the residual has more structure than the fitted noise: its thresholds come from "
@@ -273,6 +263,30 @@ std::string report_html(const Discovery& d, const dynamics::Model& before, const
                "over the variables that carry it is then in "
                "the model. The probabilities were held against frequencies on simulated data with known truth "
                "(tests/bench/discovery)."});
+}
+
+}  // namespace
+
+std::string report_html(const Discovery& d, const dynamics::Model& before, const dynamics::Measurements& data,
+                        const FigureRenderer& renderer) {
+    core::HtmlPage page(headline(d),
+                        before.name + " against " + (data.title.empty() ? data.folder.string() : data.title));
+    page.paragraph(d.sentence);
+    add_facts(page, d);
+    for (const core::Problem& problem : d.problems) {
+        if (problem.severity != core::Problem::Severity::note) {
+            page.warning(problem.message);
+        }
+    }
+    add_pictures(page, d, renderer);
+    add_rivals(page, d);
+    add_error(page, d);
+    add_consequence(page, d.consequence);
+    add_made_again(page, d);
+    add_next_experiment(page, d);
+    add_notes(page, d);
+    add_noise_and_limits(page, d);
+    add_method(page);
     page.section("From what it was made");
     page.list(d.model.lineage.made_from);
     return page.text();

@@ -82,6 +82,18 @@ core::Figure picture(const Residual& residual, const ResidualCurve& curve) {
     return figure;
 }
 
+core::Figure over_time_figure(core::FigureCurve curve, double sigma) {
+    core::Figure figure;
+    figure.title = "Residual force over time, " + curve.name;
+    figure.x = {"time", "s", 0, 0, false};
+    figure.y = {"residual force", "mN", 0, 0, false};
+    figure.caption = "Smoothed with the model inside the loop; one standard deviation of noise that gets through is " +
+                     core::format_number(1000 * sigma, 2) + " mN.";
+    curve.colour = core::palette(0);
+    figure.curves.push_back(std::move(curve));
+    return figure;
+}
+
 std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamics::Measurements& data,
                                      core::Progress& progress) {
     const HeaveRecords records = prepare_heave_records(model, data);
@@ -122,15 +134,7 @@ std::vector<Residual> heave_residual(const dynamics::Model& model, const dynamic
     for (const ResidualCurve& curve : residual.curves) {
         residual.figures.push_back(picture(residual, curve));
     }
-    core::Figure figure;
-    figure.title = "Residual force over time, " + over_time.name;
-    figure.x = {"time", "s", 0, 0, false};
-    figure.y = {"residual force", "mN", 0, 0, false};
-    figure.caption = "Smoothed with the model inside the loop; one standard deviation of noise that gets through is " +
-                     core::format_number(1000 * residual.sigma, 2) + " mN.";
-    over_time.colour = core::palette(0);
-    figure.curves.push_back(std::move(over_time));
-    residual.figures.push_back(std::move(figure));
+    residual.figures.push_back(over_time_figure(std::move(over_time), residual.sigma));
     return {residual};
 }
 

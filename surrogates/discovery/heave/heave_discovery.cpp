@@ -81,43 +81,56 @@ void HeaveLoop::fit_null() {
     set_null(noise);
 }
 
-/// Readings far from what the filter expects while their neighbours are not: they would move states and figures.
-void HeaveLoop::drop_accidents() {
-    constexpr double far = 6;      // standard deviations
+namespace {
+
+/// Steps whose gap is far from what the filter expects while its neighbours are not.
+std::vector<std::size_t> accidents(const HeaveRecord& record, const std::vector<double>& innovations) {
+    constexpr double far = 6;  // standard deviations
+    const std::size_t channels = record.velocity.empty() ? 1 : 2;
+    std::vector<std::size_t> found;
+    for (std::size_t k = 25; k + 3 < record.time.size(); ++k) {
+        const double own = std::abs(innovations[channels * k]);
+        bool peak = own > far;
+        for (std::size_t d = 1; d <= 3; ++d) {
+            peak = peak && own > std::abs(innovations[channels * (k - d)]) &&
+                   own > std::abs(innovations[channels * (k + d)]);
+        }
+        if (peak) {
+            found.push_back(k);
+        }
+    }
+    return found;
+}
+
+/// Takes them out of the chosen records; returns how many.
+std::size_t drop_accidents_of(HeaveRecords& records, const std::vector<std::size_t>& chosen,
+                              const HeaveExperiment& experiment, const HeaveNoise& noise) {
     constexpr double most = 0.01;  // of the readings: more are no accidents
     std::size_t dropped = 0;
-    const auto drop = [&](HeaveRecords& records, const std::vector<std::size_t>& chosen,
-                          const HeaveExperiment& experiment) {
-        for (const std::size_t r : chosen) {
-            HeaveRecord& record = records.records[r];
-            const std::size_t channels = record.velocity.empty() ? 1 : 2;
-            std::vector<double> innovations;
-            filter_innovations(record, experiment.explanation(r, {}), null_noise_, innovations);
-            std::vector<std::size_t> bad;
-            const std::size_t n = record.time.size();
-            for (std::size_t k = 25; k + 3 < n; ++k) {
-                const double own = std::abs(innovations[channels * k]);
-                bool peak = own > far;
-                for (std::size_t d = 1; d <= 3; ++d) {
-                    peak = peak && own > std::abs(innovations[channels * (k - d)]) &&
-                           own > std::abs(innovations[channels * (k + d)]);
-                }
-                if (peak) {
-                    bad.push_back(k);
-                }
+    for (const std::size_t r : chosen) {
+        HeaveRecord& record = records.records[r];
+        std::vector<double> innovations;
+        filter_innovations(record, experiment.explanation(r, {}), noise, innovations);
+        const std::vector<std::size_t> bad = accidents(record, innovations);
+        if (static_cast<double>(bad.size()) < most * static_cast<double>(record.time.size())) {
+            for (const std::size_t k : bad) {
+                record.gap[k] = std::nan("");
             }
-            if (static_cast<double>(bad.size()) < most * static_cast<double>(n)) {
-                for (const std::size_t k : bad) {
-                    record.gap[k] = std::nan("");
-                }
-                dropped += bad.size();
-            }
+            dropped += bad.size();
         }
-    };
+    }
+    return dropped;
+}
+
+}  // namespace
+
+/// They would move states and figures.
+void HeaveLoop::drop_accidents() {
+    std::size_t dropped = 0;
     for (int round = 0; round < 3; ++round) {
-        const std::size_t before = dropped;
-        drop(records_, train_, *experiment_);
-        if (dropped == before) {
+        const std::size_t more = drop_accidents_of(records_, train_, *experiment_, null_noise_);
+        dropped += more;
+        if (more == 0) {
             break;
         }
         fit_null();
@@ -131,7 +144,7 @@ void HeaveLoop::drop_accidents() {
     if (test_ != train_ || test_records_) {
         const HeaveExperiment test(model_, records, test_, null_noise_.gap, {});
         for (int round = 0; round < 3; ++round) {
-            drop(records, test_, test);
+            drop_accidents_of(records, test_, test, null_noise_);
         }
     }
 }
@@ -367,39 +380,42 @@ std::vector<std::size_t> HeaveLoop::beside_the_input() const {
     return list;
 }
 
+double HeaveLoop::cost_with_input(double seconds, double times, const std::vector<std::size_t>& beside) {
+    change_input(-seconds, times);
+    HeaveNoise noise = null_noise_;
+    double cost = experiment_->fit_process({}, noise);
+    std::vector<double> innovations;
+    std::size_t with = fitted_.size();
+    double least_with = 1e300;
+    for (const std::size_t i : beside) {
+        // with the numbers of the input as it was recorded: a fit comes once the clock is nearly right
+        const FittedHypothesis& one = fitted_[i];
+        const double own =
+            experiment_->evaluate(one.hypothesis.with(one.fit.parameters), nullptr, noises_[i], innovations) +
+            one.occam;
+        if (own < least_with) {
+            least_with = own;
+            with = i;
+        }
+    }
+    if (with < fitted_.size() && least_with < cost && least_with < fitted_[with].score() - 10) {
+        cost = std::min(cost, fitted(fitted_[with].hypothesis, null_noise_).fitted.score());
+    }
+    change_input(seconds, 1 / times);
+    return cost;
+}
+
 /// An input that acts before it was commanded, or that is a thousand times off or turned round, is no effect but a
 /// matter of the record.
 HeaveLoop::InputReading HeaveLoop::better_input() {
-    constexpr double none = 1e300;
-    const double unchanged = fitted_[best_single_].score() - 40;
     InputReading best;
-    double least = unchanged;
+    double least = fitted_[best_single_].score() - 40;
     const std::vector<std::size_t> beside = beside_the_input();
     const auto attempt = [&](double seconds, double times) {
         if (seconds < 0) {
             return;
         }
-        change_input(-seconds, times);
-        HeaveNoise noise = null_noise_;
-        double cost = experiment_->fit_process({}, noise);
-        std::vector<double> innovations;
-        std::size_t with = fitted_.size();
-        double least_with = none;
-        for (const std::size_t i : beside) {
-            // with the numbers of the input as it was recorded: a fit comes once the clock is nearly right
-            const FittedHypothesis& one = fitted_[i];
-            const double own =
-                experiment_->evaluate(one.hypothesis.with(one.fit.parameters), nullptr, noises_[i], innovations) +
-                one.occam;
-            if (own < least_with) {
-                least_with = own;
-                with = i;
-            }
-        }
-        if (with < fitted_.size() && least_with < cost && least_with < fitted_[with].score() - 10) {
-            cost = std::min(cost, fitted(fitted_[with].hypothesis, null_noise_).fitted.score());
-        }
-        change_input(seconds, 1 / times);
+        const double cost = cost_with_input(seconds, times, beside);
         if (cost < least) {
             least = cost;
             best = {seconds, times};

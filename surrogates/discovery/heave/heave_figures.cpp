@@ -85,53 +85,37 @@ private:
     int runs_ = 0;
 };
 
-}  // namespace
+core::Figure frame(const std::string& title, const core::FigureAxis& x, const std::string& y,
+                   const std::string& caption) {
+    core::Figure figure;
+    figure.title = title;
+    figure.x = x;
+    figure.y = {y, "mN", 0, 0, false};
+    figure.caption = caption;
+    return figure;
+}
 
-std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const HeaveNoise& noise,
-                                        const std::vector<dynamics::EffectUse>& uses, const Discovery& result) {
-    core::Figure over_gap;
-    over_gap.title = "Residual force against gap";
-    over_gap.x = {"gap", "mm", 0, 0, false};
-    over_gap.y = {"residual force", "mN", 0, 0, false};
-    over_gap.caption =
-        "Force that must be added for the measured motion, smoothed with the model inside the loop; means in bins.";
-    core::Figure over_velocity = over_gap;
-    over_velocity.title = "Residual force against heave velocity";
-    over_velocity.x = {"heave velocity", "mm/s", 0, 0, false};
-    core::Figure over_time;
-    over_time.title = "Residual force over time, first run";
-    over_time.x = {"time", "s", 0, 0, false};
-    over_time.y = {"residual force", "mN", 0, 0, false};
-    over_time.caption = "The same over time. With what was found it should wander about zero.";
-    core::Figure over_frequency;
-    over_frequency.title = "Residual force over frequency";
-    over_frequency.x = {"frequency", "Hz", 0, 0, true};
-    over_frequency.y = {"amplitude", "mN", 0, 0, false};
-    over_frequency.caption =
-        "Amplitude of the smoothed residual force, root of the mean square over the runs. A peak is a periodic force, "
-        "much at the "
-        "left a slow or constant one.";
-    HeaveNoise calm = noise;
-    calm.process = 1e-9;
-    for (const bool after : {false, true}) {
-        if (after && uses.empty()) {
-            continue;
-        }
+/// The residual force against what it may hang on.
+class ForceFigures {
+public:
+    ForceFigures(const HeaveExperiment& experiment, const HeaveNoise& noise) : experiment_(experiment), calm_(noise) {
+        calm_.process = 1e-9;
+    }
+
+    /// Of a model with these effects.
+    void add(const std::vector<dynamics::EffectUse>& uses, const std::string& name, core::Colour colour) {
         std::vector<std::pair<double, double>> gap, velocity;
         Spectrum spectrum;
-        const core::Colour colour = after ? core::palette(0) : core::Colour{170, 170, 170, 255};
-        const std::string name = after ? "with what was found" : "as declared";
-        for (const std::size_t r : experiment.chosen()) {
-            const HeaveRecord& record = experiment.records().records[r];
+        for (const std::size_t r : experiment_.chosen()) {
+            const HeaveRecord& record = experiment_.records().records[r];
             const SmoothedRun run =
-                smooth_with_force(record, experiment.explanation(r, after ? uses : std::vector<dynamics::EffectUse>{}),
-                                  calm, 0.001 * record.plant->terms.mass);
+                smooth_with_force(record, experiment_.explanation(r, uses), calm_, 0.001 * record.plant->terms.mass);
             spectrum.add(run.time, run.force);
             for (std::size_t k = 10; k + 10 < run.time.size(); ++k) {
                 gap.emplace_back(1000 * run.gap[k], 1000 * run.force[k]);
                 velocity.emplace_back(1000 * run.velocity[k], 1000 * run.force[k]);
             }
-            if (r == experiment.chosen().front()) {
+            if (r == experiment_.chosen().front()) {
                 core::FigureCurve curve;
                 curve.name = name;
                 curve.colour = colour;
@@ -146,7 +130,35 @@ std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const
         over_gap.curves.push_back(binned_mean(std::move(gap), name, colour));
         over_velocity.curves.push_back(binned_mean(std::move(velocity), name, colour));
     }
-    return {over_gap, over_velocity, over_time, over_frequency, probability_figure(result), error_figure(result)};
+
+    core::Figure over_gap = frame("Residual force against gap", {"gap", "mm", 0, 0, false}, "residual force", smoothed);
+    core::Figure over_velocity = frame("Residual force against heave velocity", {"heave velocity", "mm/s", 0, 0, false},
+                                       "residual force", smoothed);
+    core::Figure over_time = frame("Residual force over time, first run", {"time", "s", 0, 0, false}, "residual force",
+                                   "The same over time. With what was found it should wander about zero.");
+    core::Figure over_frequency =
+        frame("Residual force over frequency", {"frequency", "Hz", 0, 0, true}, "amplitude",
+              "Amplitude of the smoothed residual force, root of the mean square over the runs. A peak is a periodic "
+              "force, much at the left a slow or constant one.");
+
+private:
+    static constexpr const char* smoothed =
+        "Force that must be added for the measured motion, smoothed with the model inside the loop; means in bins.";
+    const HeaveExperiment& experiment_;
+    HeaveNoise calm_;
+};
+
+}  // namespace
+
+std::vector<core::Figure> heave_figures(const HeaveExperiment& experiment, const HeaveNoise& noise,
+                                        const std::vector<dynamics::EffectUse>& uses, const Discovery& result) {
+    ForceFigures force(experiment, noise);
+    force.add({}, "as declared", {170, 170, 170, 255});
+    if (!uses.empty()) {
+        force.add(uses, "with what was found", core::palette(0));
+    }
+    return {force.over_gap,       force.over_velocity,        force.over_time,
+            force.over_frequency, probability_figure(result), error_figure(result)};
 }
 
 }  // namespace underbody::discovery

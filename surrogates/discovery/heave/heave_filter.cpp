@@ -261,105 +261,152 @@ void prepare_input(HeaveRecord& record) {
     record.linear_input = std::move(linear);
 }
 
-double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
-                          std::vector<double>& innovations, std::vector<double>* states,
-                          std::vector<double>* memories) {
-    Equation equation(record, explanation);
-    const dynamics::HeaveTerms& terms = explanation.terms;
-    std::vector<double> input;
-    transform_input(record, explanation, input);
-    double h = 0;
-    double w = 0;
-    double span = 0;
-    first_guess(record, h, w, span);
-    h -= terms.sensor_offset(record.time.front());
-    equation.start_history(w);
-    double n = 0;
-    const double slow = noise.slow * noise.slow;
-    Covariance p{std::max(1e-4, span * span), 0, 0, std::max(1e-4, span * span), 0, slow};
-    const double delay = terms.sensor_delay;
-    double log_determinant = 0;
-    const auto update = [&](double residual, double ch, double cw, double cn, double variance) {
-        const double ph = p.hh * ch + p.hw * cw + p.hn * cn;
-        const double pw = p.hw * ch + p.ww * cw + p.wn * cn;
-        const double pn = p.hn * ch + p.wn * cw + p.nn * cn;
+namespace {
+
+/// Gap, velocity and coloured noise of the gap sensor through one run, reading by reading.
+class GapFilter {
+public:
+    GapFilter(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+              std::vector<double>& innovations)
+        : record_(record),
+          terms_(explanation.terms),
+          noise_(noise),
+          slow_(noise.slow * noise.slow),
+          equation_(record, explanation),
+          innovations_(innovations) {
+        transform_input(record, explanation, input_);
+        double span = 0;
+        first_guess(record, h_, w_, span);
+        h_ -= terms_.sensor_offset(record.time.front());
+        equation_.start_history(w_);
+        p_ = {std::max(1e-4, span * span), 0, 0, std::max(1e-4, span * span), 0, slow_};
+    }
+
+    /// From the step before to k.
+    void to_step(std::size_t k) {
+        double rest = record_.time[k] - record_.time[k - 1];
+        double t = record_.time[k - 1];
+        equation_.to_step(record_, k);
+        while (rest > 1e-9) {
+            Equation::Transition f;
+            const double dt = equation_.advance(t, std::min(rest, longest_step), input_[k], p_.ww, h_, w_, f);
+            spread(f, dt);
+            t += dt;
+            rest -= dt;
+        }
+    }
+
+    void read_gap(std::size_t k) {
+        if (!std::isfinite(record_.gap[k])) {
+            innovations_.push_back(0);
+            return;
+        }
+        double reading = h_ + terms_.sensor_offset(record_.time[k]) + n_;
+        double ch = 1;
+        double cw = 0;
+        if (const double delay = terms_.sensor_delay; delay > 0) {
+            dynamics::HeaveSlopes slopes;
+            const double a = equation_.acceleration(record_.time[k], h_, w_, input_[k], p_.ww, slopes);
+            reading += -delay * w_ + 0.5 * delay * delay * a;
+            ch += 0.5 * delay * delay * slopes.gap;
+            cw = -delay + 0.5 * delay * delay * slopes.velocity;
+        }
+        const double sigma = noise_.gap * record_.gap_share[k];
+        take(record_.gap[k] - reading, ch, cw, 1, sigma * sigma);
+    }
+
+    void read_velocity(std::size_t k) {
+        if (!std::isfinite(record_.velocity[k])) {
+            innovations_.push_back(0);
+            return;
+        }
+        const double sigma = noise_.velocity * record_.velocity_share[k];
+        take(record_.velocity[k] - w_, 0, 1, 0, sigma * sigma);
+    }
+
+    [[nodiscard]] double gap() const { return h_; }
+    [[nodiscard]] double velocity() const { return w_; }
+    [[nodiscard]] const double* memory() const { return equation_.memory(); }
+    [[nodiscard]] double log_determinant() const { return log_determinant_; }
+
+private:
+    /// The covariance over a step of `dt`.
+    void spread(const Equation::Transition& f, double dt) {
+        const Covariance o = p_;
+        const double a = f.hh * o.hh + f.hw * o.hw;
+        const double b = f.hh * o.hw + f.hw * o.ww;
+        const double c = f.wh * o.hh + f.ww * o.hw;
+        const double d = f.wh * o.hw + f.ww * o.ww;
+        p_.hh = a * f.hh + b * f.hw + noise_.process * dt * dt * dt / 3;
+        p_.hw = a * f.wh + b * f.ww + noise_.process * dt * dt / 2;
+        p_.ww = c * f.wh + d * f.ww + noise_.process * dt;
+        if (slow_ > 0) {
+            const double phi = std::exp(-dt / noise_.slow_time);
+            n_ *= phi;
+            p_.hn = phi * (f.hh * o.hn + f.hw * o.wn);
+            p_.wn = phi * (f.wh * o.hn + f.ww * o.wn);
+            p_.nn = phi * phi * o.nn + slow_ * (1 - phi * phi);
+        }
+    }
+
+    /// A reading that is `residual` off, of ch gap + cw velocity + cn coloured noise.
+    void take(double residual, double ch, double cw, double cn, double variance) {
+        const double ph = p_.hh * ch + p_.hw * cw + p_.hn * cn;
+        const double pw = p_.hw * ch + p_.ww * cw + p_.wn * cn;
+        const double pn = p_.hn * ch + p_.wn * cw + p_.nn * cn;
         const double s = ch * ph + cw * pw + cn * pn + variance;
         const double gain_h = ph / s;
         const double gain_w = pw / s;
         const double gain_n = pn / s;
-        h += gain_h * residual;
-        w += gain_w * residual;
-        n += gain_n * residual;
-        equation.correct_velocity(gain_w * residual);
-        p.hh -= gain_h * ph;
-        p.hw -= gain_h * pw;
-        p.hn -= gain_h * pn;
-        p.ww -= gain_w * pw;
-        p.wn -= gain_w * pn;
-        p.nn -= gain_n * pn;
-        innovations.push_back(residual / std::sqrt(s));
-        log_determinant += std::log(s);
-    };
+        h_ += gain_h * residual;
+        w_ += gain_w * residual;
+        n_ += gain_n * residual;
+        equation_.correct_velocity(gain_w * residual);
+        p_.hh -= gain_h * ph;
+        p_.hw -= gain_h * pw;
+        p_.hn -= gain_h * pn;
+        p_.ww -= gain_w * pw;
+        p_.wn -= gain_w * pn;
+        p_.nn -= gain_n * pn;
+        innovations_.push_back(residual / std::sqrt(s));
+        log_determinant_ += std::log(s);
+    }
+
+    const HeaveRecord& record_;
+    const dynamics::HeaveTerms& terms_;
+    const HeaveNoise& noise_;
+    double slow_;  ///< m^2, variance of the coloured noise
+    Equation equation_;
+    std::vector<double> input_;
+    std::vector<double>& innovations_;
+    double h_ = 0, w_ = 0, n_ = 0;
+    Covariance p_{};
+    double log_determinant_ = 0;
+};
+
+}  // namespace
+
+double filter_innovations(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
+                          std::vector<double>& innovations, std::vector<double>* states,
+                          std::vector<double>* memories) {
+    GapFilter filter(record, explanation, noise, innovations);
     for (std::size_t k = 0; k < record.time.size(); ++k) {
         if (k > 0) {
-            double rest = record.time[k] - record.time[k - 1];
-            double t = record.time[k - 1];
-            equation.to_step(record, k);
-            while (rest > 1e-9) {
-                Equation::Transition f;
-                const double dt = equation.advance(t, std::min(rest, longest_step), input[k], p.ww, h, w, f);
-                const Covariance o = p;
-                const double a = f.hh * o.hh + f.hw * o.hw;
-                const double b = f.hh * o.hw + f.hw * o.ww;
-                const double c = f.wh * o.hh + f.ww * o.hw;
-                const double d = f.wh * o.hw + f.ww * o.ww;
-                p.hh = a * f.hh + b * f.hw + noise.process * dt * dt * dt / 3;
-                p.hw = a * f.wh + b * f.ww + noise.process * dt * dt / 2;
-                p.ww = c * f.wh + d * f.ww + noise.process * dt;
-                if (slow > 0) {
-                    const double phi = std::exp(-dt / noise.slow_time);
-                    n *= phi;
-                    p.hn = phi * (f.hh * o.hn + f.hw * o.wn);
-                    p.wn = phi * (f.wh * o.hn + f.ww * o.wn);
-                    p.nn = phi * phi * o.nn + slow * (1 - phi * phi);
-                }
-                t += dt;
-                rest -= dt;
-            }
+            filter.to_step(k);
         }
-        if (std::isfinite(record.gap[k])) {
-            double reading = h + terms.sensor_offset(record.time[k]) + n;
-            double ch = 1;
-            double cw = 0;
-            if (delay > 0) {
-                dynamics::HeaveSlopes slopes;
-                const double a = equation.acceleration(record.time[k], h, w, input[k], p.ww, slopes);
-                reading += -delay * w + 0.5 * delay * delay * a;
-                ch += 0.5 * delay * delay * slopes.gap;
-                cw = -delay + 0.5 * delay * delay * slopes.velocity;
-            }
-            const double sigma = noise.gap * record.gap_share[k];
-            update(record.gap[k] - reading, ch, cw, 1, sigma * sigma);
-        } else {
-            innovations.push_back(0);
-        }
+        filter.read_gap(k);
         if (!record.velocity.empty()) {
-            if (std::isfinite(record.velocity[k])) {
-                const double sigma = noise.velocity * record.velocity_share[k];
-                update(record.velocity[k] - w, 0, 1, 0, sigma * sigma);
-            } else {
-                innovations.push_back(0);
-            }
+            filter.read_velocity(k);
         }
         if (states != nullptr) {
-            states->push_back(h);
-            states->push_back(w);
+            states->push_back(filter.gap());
+            states->push_back(filter.velocity());
         }
         if (memories != nullptr) {
-            memories->insert(memories->end(), equation.memory(), equation.memory() + dynamics::history_states);
+            memories->insert(memories->end(), filter.memory(), filter.memory() + dynamics::history_states);
         }
     }
-    return log_determinant;
+    return filter.log_determinant();
 }
 
 namespace {

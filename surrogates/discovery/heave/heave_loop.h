@@ -40,6 +40,8 @@ private:
         double early = 0, factor = 1;
     };
     [[nodiscard]] std::vector<std::size_t> beside_the_input() const;
+    /// Cost of the likeliest explanation, alone or with one of `beside`, where the input is read so.
+    [[nodiscard]] double cost_with_input(double seconds, double times, const std::vector<std::size_t>& beside);
     [[nodiscard]] InputReading better_input();
     void check_input();
     void change_input(double seconds, double factor);
@@ -54,6 +56,10 @@ private:
         double gain = 0;       ///< of the base's own innovations
         double surprise = 0;   ///< -log10 of the chance of such a gain from white noise
     };
+    [[nodiscard]] std::vector<Probe> things_missing(const std::vector<dynamics::EffectUse>& uses, bool named) const;
+    [[nodiscard]] DesignMatrix answers_of(const Probe& probe, const HeaveExperiment& experiment,
+                                          const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                          const std::vector<double>& innovations) const;
     [[nodiscard]] std::vector<Probe> probes(const HeaveExperiment& experiment,
                                             const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
                                             const DesignMatrix& own, bool named) const;
@@ -83,7 +89,9 @@ private:
     [[nodiscard]] const HeaveExperiment::Smooth& best_smooth(const std::vector<HeaveExperiment::Smooth>& list) const;
 
     // heave_verdict.cpp
+    class PairSearch;
     void fit_pairs();
+    void keep_pairs(const std::vector<FittedHypothesis>& found, const std::vector<HeaveNoise>& noises);
     void fit_both(const std::vector<std::pair<std::size_t, std::size_t>>& pairs, std::vector<FittedHypothesis>& found,
                   std::vector<HeaveNoise>& noises) const;
     void fit_further();

@@ -83,21 +83,15 @@ bool input_changes(const HeaveRecords& records) {
 
 }  // namespace
 
-std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experiment,
-                                                const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                                                const DesignMatrix& own, bool named) const {
-    std::vector<double> innovations;
-    experiment.evaluate(uses, nullptr, noise, innovations);
-    const DesignMatrix taken = orthonormal(own);
+std::vector<HeaveLoop::Probe> HeaveLoop::things_missing(const std::vector<dynamics::EffectUse>& uses,
+                                                        bool named) const {
     std::vector<Probe> list;
-    if (named) {
-        for (std::size_t i = 0; i < candidates_.size(); ++i) {
-            const bool inside = std::any_of(uses.begin(), uses.end(),
-                                            [&](const auto& use) { return use.name == candidates_[i].names.front(); });
-            if (!inside) {
-                list.emplace_back();
-                list.back().candidate = i;
-            }
+    for (std::size_t i = 0; named && i < candidates_.size(); ++i) {
+        const bool inside = std::any_of(uses.begin(), uses.end(),
+                                        [&](const auto& use) { return use.name == candidates_[i].names.front(); });
+        if (!inside) {
+            list.emplace_back();
+            list.back().candidate = i;
         }
     }
     const bool input_moves = records_.input_recorded && input_changes(records_);
@@ -109,26 +103,42 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
             list.back().smooth = &set;
         }
     }
+    return list;
+}
+
+DesignMatrix HeaveLoop::answers_of(const Probe& probe, const HeaveExperiment& experiment,
+                                   const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                   const std::vector<double>& innovations) const {
+    if (probe.smooth != nullptr) {
+        return experiment.answers(experiment.flat_force(*probe.smooth, uses, noise), uses, noise, innovations);
+    }
+    DesignMatrix matrix;
+    matrix.rows = innovations.size();
+    std::vector<double> there;
+    for (const std::vector<double>& p : small_steps(candidates_[probe.candidate])) {
+        std::vector<dynamics::EffectUse> with = uses;
+        for (dynamics::EffectUse& use : candidates_[probe.candidate].with(p)) {
+            with.push_back(std::move(use));
+        }
+        experiment.evaluate(with, nullptr, noise, there);
+        ++matrix.columns;
+        for (std::size_t i = 0; i < there.size(); ++i) {
+            matrix.values.push_back(there[i] - innovations[i]);
+        }
+    }
+    return matrix;
+}
+
+std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experiment,
+                                                const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
+                                                const DesignMatrix& own, bool named) const {
+    std::vector<double> innovations;
+    experiment.evaluate(uses, nullptr, noise, innovations);
+    const DesignMatrix taken = orthonormal(own);
+    std::vector<Probe> list = things_missing(uses, named);
     core::parallel_for(list.size(), [&](std::size_t k) {
         Probe& probe = list[k];
-        DesignMatrix matrix;
-        matrix.rows = innovations.size();
-        if (probe.smooth != nullptr) {
-            matrix = experiment.answers(experiment.flat_force(*probe.smooth, uses, noise), uses, noise, innovations);
-        } else {
-            std::vector<double> there;
-            for (const std::vector<double>& p : small_steps(candidates_[probe.candidate])) {
-                std::vector<dynamics::EffectUse> with = uses;
-                for (dynamics::EffectUse& use : candidates_[probe.candidate].with(p)) {
-                    with.push_back(std::move(use));
-                }
-                experiment.evaluate(with, nullptr, noise, there);
-                ++matrix.columns;
-                for (std::size_t i = 0; i < there.size(); ++i) {
-                    matrix.values.push_back(there[i] - innovations[i]);
-                }
-            }
-        }
+        const DesignMatrix matrix = answers_of(probe, experiment, uses, noise, innovations);
         if (!std::all_of(matrix.values.begin(), matrix.values.end(), [](double x) { return std::isfinite(x); })) {
             return;
         }

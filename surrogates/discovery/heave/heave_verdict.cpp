@@ -1,6 +1,5 @@
 // From fitted effects to a verdict for heave runs: pairs, what they leave, and how stable the answer is.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -43,79 +42,105 @@ void HeaveLoop::fit_both(const std::vector<std::pair<std::size_t, std::size_t>>&
         progress_);
 }
 
+/// The pairs of effects that were asked for, each fitted once.
+class HeaveLoop::PairSearch {
+public:
+    explicit PairSearch(const HeaveLoop& loop) : loop_(loop), asked_{loop.best_single_} {}
+
+    void add(std::size_t a, std::size_t b) {
+        if (a < loop_.singles_ && b < loop_.singles_ &&
+            loop_.fitted_[a].hypothesis.names != loop_.fitted_[b].hypothesis.names &&
+            std::find(pairs_.begin(), pairs_.end(), std::pair{a, b}) == pairs_.end() &&
+            std::find(pairs_.begin(), pairs_.end(), std::pair{b, a}) == pairs_.end()) {
+            pairs_.emplace_back(a, b);
+        }
+    }
+    void add_seconds(std::size_t one, const std::vector<std::size_t>& second) {
+        for (std::size_t k = 0; k < std::min(seconds_tried, second.size()); ++k) {
+            add(one, second[k]);
+        }
+    }
+    /// With what would explain most beside it, looked for once.
+    void add_beside(std::size_t one) {
+        if (asked_.insert(one).second) {
+            add_seconds(one, loop_.rest_beside(loop_.fitted_[one], loop_.noises_[one]).second);
+        }
+    }
+    /// Either of the best two may stand in for one that is like it.
+    void add_like(const std::pair<std::size_t, std::size_t>& best) {
+        for (std::size_t c = 0; c < loop_.singles_; ++c) {
+            if (like(c, best.second)) {
+                add(best.first, c);
+            }
+            if (like(c, best.first)) {
+                add(best.second, c);
+            }
+        }
+    }
+    /// True where there was something that had not been fitted.
+    bool fit_new() {
+        const std::vector<std::pair<std::size_t, std::size_t>> more(
+            pairs_.begin() + static_cast<std::ptrdiff_t>(found.size()), pairs_.end());
+        loop_.fit_both(more, found, noises);
+        return !more.empty();
+    }
+    [[nodiscard]] std::pair<std::size_t, std::size_t> best() const { return pairs_[best_hypothesis(found, 2)]; }
+    void drop_implausible() {
+        for (std::size_t k = found.size(); k-- > 0;) {
+            if (!loop_.plausible_pair(found[k])) {
+                found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
+                noises.erase(noises.begin() + static_cast<std::ptrdiff_t>(k));
+            }
+        }
+    }
+
+    std::vector<FittedHypothesis> found;
+    std::vector<HeaveNoise> noises;
+
+private:
+    [[nodiscard]] bool like(std::size_t a, std::size_t b) const {
+        return one_kin({loop_.fitted_[a].hypothesis.names.front(), loop_.fitted_[b].hypothesis.names.front()});
+    }
+
+    const HeaveLoop& loop_;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs_;
+    std::set<std::size_t> asked_;  ///< beside which others were looked for
+};
+
 /// A second effect is looked for where the best single one leaves structure, and stays when it earns its place.
 void HeaveLoop::fit_pairs() {
-    const auto tried = [&](std::size_t i) { return i < singles_; };
-    std::vector<std::size_t> order(singles_);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
     if (rest_.fit.p > calibration_.unknown_p && rest_.second.empty()) {
         return;
     }
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    const auto add = [&](std::size_t a, std::size_t b) {
-        if (tried(a) && tried(b) && fitted_[a].hypothesis.names != fitted_[b].hypothesis.names &&
-            std::find(pairs.begin(), pairs.end(), std::pair{a, b}) == pairs.end() &&
-            std::find(pairs.begin(), pairs.end(), std::pair{b, a}) == pairs.end()) {
-            pairs.emplace_back(a, b);
-        }
-    };
-    for (std::size_t k = 0; k < std::min(seconds_tried, rest_.second.size()); ++k) {
-        add(best_single_, rest_.second[k]);
-    }
-    std::set<std::size_t> asked = {best_single_};  // beside which others were looked for
-    const auto add_beside = [&](std::size_t one) {
-        if (asked.insert(one).second) {
-            const Rest beside = rest_beside(fitted_[one], noises_[one]);
-            for (std::size_t k = 0; k < std::min(seconds_tried, beside.second.size()); ++k) {
-                add(one, beside.second[k]);
-            }
-        }
-    };
+    PairSearch search(*this);
+    search.add_seconds(best_single_, rest_.second);
     if (singles_ > 1) {
-        add_beside(order[0] == best_single_ ? order[1] : order[0]);
+        std::vector<std::size_t> order(singles_);
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
+        search.add_beside(order[0] == best_single_ ? order[1] : order[0]);
     }
-    std::vector<FittedHypothesis> found;
-    std::vector<HeaveNoise> noises;
-    const auto fit_new = [&] {
-        const std::vector<std::pair<std::size_t, std::size_t>> more(
-            pairs.begin() + static_cast<std::ptrdiff_t>(found.size()), pairs.end());
-        fit_both(more, found, noises);
-    };
-    fit_new();
-    if (!found.empty()) {
-        // either of the best two may stand in for one that is like it
-        const auto [a, b] = pairs[best_hypothesis(found, 2)];
-        for (std::size_t c = 0; c < singles_; ++c) {
-            const std::string& name = fitted_[c].hypothesis.names.front();
-            if (one_kin({name, fitted_[b].hypothesis.names.front()})) {
-                add(a, c);
-            }
-            if (one_kin({name, fitted_[a].hypothesis.names.front()})) {
-                add(b, c);
-            }
-        }
-        fit_new();
+    search.fit_new();
+    if (!search.found.empty()) {
+        search.add_like(search.best());
+        search.fit_new();
     }
     // one effect alone may do what two do together, and neither of the two be found beside it: from each of the best
     // two the search goes on without the other
-    for (bool more = !found.empty(); more;) {
-        const auto [a, b] = pairs[best_hypothesis(found, 2)];
-        add_beside(a);
-        add_beside(b);
-        more = pairs.size() > found.size();
-        fit_new();
+    for (bool more = !search.found.empty(); more;) {
+        const auto [a, b] = search.best();
+        search.add_beside(a);
+        search.add_beside(b);
+        more = search.fit_new();
     }
-    for (std::size_t k = found.size(); k-- > 0;) {
-        if (!plausible_pair(found[k])) {
-            found.erase(found.begin() + static_cast<std::ptrdiff_t>(k));
-            noises.erase(noises.begin() + static_cast<std::ptrdiff_t>(k));
-        }
+    search.drop_implausible();
+    if (!search.found.empty()) {
+        keep_pairs(search.found, search.noises);
     }
-    if (found.empty()) {
-        return;
-    }
+}
+
+void HeaveLoop::keep_pairs(const std::vector<FittedHypothesis>& found, const std::vector<HeaveNoise>& noises) {
     const std::size_t best = best_hypothesis(found, 2);
     const double gain = fitted_[best_single_].score() - found[best].score();
     // two effects of one kind may be one effect whose law has another form than the catalogue's: that needs more to be

@@ -241,6 +241,27 @@ double MotionExperiment::fit_process(const std::vector<dynamics::EffectUse>& use
     return search(uses, process_numbers(), noise);
 }
 
+std::vector<double> MotionExperiment::best_start(const Hypothesis& hypothesis,
+                                                 const std::vector<std::vector<double>>& starts,
+                                                 const MotionNoise& noise) const {
+    std::vector<std::size_t> all(records_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    std::vector<double> best;
+    double least = 1e301;
+    for (const std::vector<double>& start : starts) {
+        std::vector<double> inside = start;
+        for (std::size_t j = 0; j < inside.size(); ++j) {
+            inside[j] = std::clamp(inside[j], hypothesis.parameters[j].lower, hypothesis.parameters[j].upper);
+        }
+        const double cost = cost_of(all, hypothesis.with(inside), noise);
+        if (cost < least) {
+            least = cost;
+            best = std::move(inside);
+        }
+    }
+    return best;
+}
+
 MotionExperiment::Result MotionExperiment::fit(const Hypothesis& hypothesis,
                                                const std::vector<std::vector<double>>& starts,
                                                const MotionNoise& begin) const {
@@ -248,22 +269,12 @@ MotionExperiment::Result MotionExperiment::fit(const Hypothesis& hypothesis,
     result.noise = begin;
     FittedHypothesis& fitted = result.fitted;
     fitted.hypothesis = hypothesis;
-    std::vector<std::size_t> all(records_.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    double least = 1e301;
-    for (const std::vector<double>& start : starts) {
-        std::vector<double> inside = start;
-        for (std::size_t j = 0; j < inside.size(); ++j) {
-            inside[j] = std::clamp(inside[j], hypothesis.parameters[j].lower, hypothesis.parameters[j].upper);
+    const auto begin_at = [&](const std::vector<double>& numbers) {
+        for (std::size_t j = 0; j < numbers.size(); ++j) {
+            fitted.hypothesis.parameters[j].start = numbers[j];
         }
-        const double cost = cost_of(all, hypothesis.with(inside), begin);
-        if (cost < least) {
-            least = cost;
-            for (std::size_t j = 0; j < inside.size(); ++j) {
-                fitted.hypothesis.parameters[j].start = inside[j];
-            }
-        }
-    }
+    };
+    begin_at(best_start(hypothesis, starts, begin));
     const auto residuals = [&](std::span<const double> p, std::vector<double>& out) {
         double cost = 0;
         try {
@@ -279,9 +290,7 @@ MotionExperiment::Result MotionExperiment::fit(const Hypothesis& hypothesis,
     options.tolerance = 0.05;
     for (int round = 0; round < 3; ++round) {
         fitted.fit = least_squares(fitted.hypothesis.parameters, residuals, options);
-        for (std::size_t j = 0; j < fitted.fit.parameters.size(); ++j) {
-            fitted.hypothesis.parameters[j].start = fitted.fit.parameters[j];
-        }
+        begin_at(fitted.fit.parameters);
         const MotionNoise before = result.noise;
         if (round < 2) {
             fit_process(hypothesis.with(fitted.fit.parameters), result.noise);

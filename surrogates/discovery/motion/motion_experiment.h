@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +57,10 @@ public:
     [[nodiscard]] Result fit(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& starts,
                              const MotionNoise& begin) const;
 
+    /// The likeliest, moved inside the bounds; empty where none can be.
+    [[nodiscard]] std::vector<double> best_start(const Hypothesis& hypothesis,
+                                                 const std::vector<std::vector<double>>& starts,
+                                                 const MotionNoise& noise) const;
     /// What a small change of each number does to the innovations, one column each.
     [[nodiscard]] DesignMatrix answers(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& steps,
                                        const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,

@@ -110,6 +110,34 @@ double MotionLoop::Twins::chance(std::size_t channel, double error, std::uint64_
     return (larger + 1.0) / (sets + 1.0);
 }
 
+bool MotionLoop::twin_errors(dynamics::MeasuredMotion& run, const dynamics::MotionWindow& window, core::Random& random,
+                             std::vector<std::vector<double>>& errors) const {
+    dynamics::MotionReadings twin = run.readings();
+    for (const std::size_t i : channels_) {
+        const std::vector<double> noise = drawn_noise(run.time(), window.from, window.end, null_noise_, i, random);
+        for (std::size_t k = window.from; !twin.value[i].empty() && k <= window.end; ++k) {
+            double& reading = twin.value[i][k];
+            reading = std::isfinite(reading) ? run.reading(k, i, window.at(k)) + noise[k - window.from] : reading;
+        }
+    }
+    const auto state = dynamics::fitted_state(run, twin, window.from, window.start);
+    if (!state) {
+        return false;
+    }
+    const std::vector<dynamics::MotionState> motion = dynamics::motion_from(run, *state, window.from, window.end);
+    errors.assign(channels_.size(), {});
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+        const std::vector<double>& read = twin.value[channels_[c]];
+        for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
+            const double error = run.reading(k, channels_[c], motion[k - window.from]) - read[k];
+            if (std::isfinite(error)) {
+                errors[c].push_back(error);
+            }
+        }
+    }
+    return true;
+}
+
 MotionLoop::Twins MotionLoop::twins_of(const Answer& answer, std::size_t draws) const {
     using Squares = std::vector<std::vector<double>>;  // by window and draw
     const std::size_t runs = answer.runs.size();
@@ -118,40 +146,19 @@ MotionLoop::Twins MotionLoop::twins_of(const Answer& answer, std::size_t draws) 
     core::parallel_for(
         runs,
         [&](std::size_t r) {
-            dynamics::MeasuredMotion& run = *answer.runs[r].run;
             core::Random random(options_.seed + 77, r);
+            std::vector<std::vector<double>> errors;
             for (const dynamics::MotionWindow& window : answer.runs[r].windows) {
                 for (Squares& own : squares[r]) {
                     own.emplace_back();
                 }
                 for (std::size_t draw = 0; draw < draws; ++draw) {
-                    dynamics::MotionReadings twin = run.readings();
-                    for (const std::size_t i : channels_) {
-                        const std::vector<double> noise =
-                            drawn_noise(run.time(), window.from, window.end, null_noise_, i, random);
-                        for (std::size_t k = window.from; !twin.value[i].empty() && k <= window.end; ++k) {
-                            double& reading = twin.value[i][k];
-                            reading = std::isfinite(reading) ? run.reading(k, i, window.at(k)) + noise[k - window.from]
-                                                             : reading;
-                        }
-                    }
-                    const auto state = dynamics::fitted_state(run, twin, window.from, window.start);
-                    if (!state) {
+                    if (!twin_errors(*answer.runs[r].run, window, random, errors)) {
                         continue;
                     }
-                    const std::vector<dynamics::MotionState> motion =
-                        dynamics::motion_from(run, *state, window.from, window.end);
                     for (std::size_t c = 0; c < channels_.size(); ++c) {
-                        const std::vector<double>& read = twin.value[channels_[c]];
-                        std::vector<double> errors;
-                        for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
-                            const double error = run.reading(k, channels_[c], motion[k - window.from]) - read[k];
-                            if (std::isfinite(error)) {
-                                errors.push_back(error);
-                            }
-                        }
-                        counts[r][c] += squares[r][c].back().empty() ? static_cast<double>(errors.size()) : 0;
-                        squares[r][c].back().push_back(sum_of_squares(errors));
+                        counts[r][c] += squares[r][c].back().empty() ? static_cast<double>(errors[c].size()) : 0;
+                        squares[r][c].back().push_back(sum_of_squares(errors[c]));
                     }
                 }
             }

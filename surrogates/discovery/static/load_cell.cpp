@@ -78,16 +78,47 @@ private:
         }
     }
 
+    [[nodiscard]] double volts(std::size_t row) const {
+        const double voltage = log_.numbers("jet_voltage")[row];
+        return std::isfinite(voltage) ? voltage : 0;
+    }
+    /// Of the slide; 0 where the log does not say.
+    [[nodiscard]] double way(std::size_t row) const {
+        const core::Column* direction = log_.find("approach_direction");
+        return direction != nullptr && std::isfinite(direction->numbers[row]) ? direction->numbers[row] : 0;
+    }
+
+    /// What was read from a row on to before another, once it had settled; nothing without a reading.
+    [[nodiscard]] std::optional<Block> block_of(std::size_t begin, std::size_t end) const {
+        const std::vector<double>& time = log_.numbers("time");
+        const std::vector<double>& reading = log_.numbers(quantity_);
+        std::vector<double> values;
+        double middle = 0;
+        for (std::size_t k = begin; k < end; ++k) {
+            if (time[k] >= time[begin] + options_.settle && std::isfinite(reading[k])) {
+                values.push_back(reading[k]);
+                middle += time[k];
+            }
+        }
+        if (values.empty()) {
+            return {};
+        }
+        const double n = static_cast<double>(values.size());
+        Block block{
+            log_.numbers("gap")[begin], volts(begin), way(begin), time[begin], middle / n, mean(values), 0, 1, begin};
+        double square = 0;
+        for (const double value : values) {
+            square += (value - block.mean_value) * (value - block.mean_value);
+        }
+        block.scatter = n > 1 ? std::sqrt(square / (n - 1)) : 0;
+        const double r = n > 8 ? std::clamp(autocorrelation(values, 1), 0.0, 0.98) : 0;
+        block.effective = std::max(1.0, n * (1 - r) / (1 + r));
+        return block;
+    }
+
     void find_blocks() {
         const std::vector<double>& time = log_.numbers("time");
         const std::vector<double>& gap = log_.numbers("gap");
-        const std::vector<double>& voltage = log_.numbers("jet_voltage");
-        const std::vector<double>& reading = log_.numbers(quantity_);
-        const core::Column* direction = log_.find("approach_direction");
-        const auto volts = [&](std::size_t i) { return std::isfinite(voltage[i]) ? voltage[i] : 0.0; };
-        const auto way = [&](std::size_t i) {
-            return direction != nullptr && std::isfinite(direction->numbers[i]) ? direction->numbers[i] : 0.0;
-        };
         std::size_t begin = 0;
         std::vector<double> scatters;
         for (std::size_t i = 1; i <= time.size(); ++i) {
@@ -98,34 +129,9 @@ private:
             if (i < time.size() && gap[i] == gap[begin] && volts(i) == volts(begin) && way(i) == way(begin)) {
                 continue;
             }
-            std::vector<double> values;
-            double middle = 0;
-            for (std::size_t k = begin; k < i; ++k) {
-                if (time[k] >= time[begin] + options_.settle && std::isfinite(reading[k])) {
-                    values.push_back(reading[k]);
-                    middle += time[k];
-                }
-            }
-            if (!values.empty()) {
-                Block block{gap[begin],
-                            volts(begin),
-                            way(begin),
-                            time[begin],
-                            middle / static_cast<double>(values.size()),
-                            mean(values),
-                            0,
-                            1,
-                            begin};
-                const double n = static_cast<double>(values.size());
-                double square = 0;
-                for (const double value : values) {
-                    square += (value - block.mean_value) * (value - block.mean_value);
-                }
-                block.scatter = n > 1 ? std::sqrt(square / (n - 1)) : 0;
-                const double r = n > 8 ? std::clamp(autocorrelation(values, 1), 0.0, 0.98) : 0;
-                block.effective = std::max(1.0, n * (1 - r) / (1 + r));
-                scatters.push_back(block.scatter);
-                blocks_.push_back(block);
+            if (const std::optional<Block> block = block_of(begin, i)) {
+                scatters.push_back(block->scatter);
+                blocks_.push_back(*block);
             }
             begin = i;
         }

@@ -59,33 +59,63 @@ std::vector<Balance> balances(const dynamics::Model& model, const dynamics::Cond
     return list;
 }
 
+/// Effects by where they belong, each once, as a sentence names them.
+struct Sides {
+    std::vector<std::string> rig, body;
+};
+
+Sides sides_of(const std::vector<dynamics::EffectUse>& uses) {
+    Sides sides;
+    for (const dynamics::EffectUse& use : uses) {
+        std::vector<std::string>& side = dynamics::effect(use.name).info().belongs_to_the_rig ? sides.rig : sides.body;
+        const std::string name = use.name == "unknown" ? "the smooth correction" : use.name;
+        if (std::find(side.begin(), side.end(), name) == side.end()) {
+            side.push_back(name);
+        }
+    }
+    return sides;
+}
+
+std::string text_of(const Sides& sides) {
+    std::string text;
+    if (const auto& rig = sides.rig; !rig.empty()) {
+        text += list_of(rig) + (rig.size() == 1 ? " belongs" : " belong") +
+                " to the rig, not to the vehicle: its motion does not change. A force table made from these "
+                "readings must have " +
+                (rig.size() == 1 ? "it" : "them") +
+                " taken out; where the vehicle would seem to rest otherwise stands under 'after'. ";
+    }
+    if (const auto& body = sides.body; !body.empty()) {
+        text += list_of(body) + (body.size() == 1 ? " goes" : " go") +
+                " with the vehicle: every map and equilibrium made from the new model has " +
+                (body.size() == 1 ? "it" : "them") + ". ";
+    }
+    return text;
+}
+
+/// "speed 0.5 m/s, pitch 0 rad"
+std::string text_of(const dynamics::Conditions& held) {
+    std::string at;
+    for (const Channel channel : {Channel::speed, Channel::jet_voltage, Channel::pitch}) {
+        if (held.has(channel)) {
+            at += (at.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
+                  core::format_number(held[channel], 3) + " " + dynamics::channel_unit(channel);
+        }
+    }
+    return at;
+}
+
 }  // namespace
 
 Consequence static_consequence(const dynamics::Model& before, const std::vector<dynamics::EffectUse>& uses,
                                const StaticExperiment& experiment, core::Progress& progress) {
     Consequence result;
-    std::vector<std::string> rig, body;
     dynamics::Model after = before;
     for (const dynamics::EffectUse& use : uses) {
-        std::vector<std::string>& side = dynamics::effect(use.name).info().belongs_to_the_rig ? rig : body;
-        const std::string name = use.name == "unknown" ? "the smooth correction" : use.name;
-        if (std::find(side.begin(), side.end(), name) == side.end()) {
-            side.push_back(name);
-        }
         after = after.with_effect(use);
     }
-    if (!rig.empty()) {
-        result.text += list_of(rig) + (rig.size() == 1 ? " belongs" : " belong") +
-                       " to the rig, not to the vehicle: its motion does not change. A force table made from these "
-                       "readings must have " +
-                       (rig.size() == 1 ? "it" : "them") +
-                       " taken out; where the vehicle would seem to rest otherwise stands under 'after'. ";
-    }
-    if (!body.empty()) {
-        result.text += list_of(body) + (body.size() == 1 ? " goes" : " go") +
-                       " with the vehicle: every map and equilibrium made from the new model has " +
-                       (body.size() == 1 ? "it" : "them") + ". ";
-    }
+    const Sides sides = sides_of(uses);
+    result.text = text_of(sides);
     const std::vector<std::string>& quantities = experiment.quantities();
     const std::vector<Channel>& varying = experiment.varying();
     if (std::find(quantities.begin(), quantities.end(), "lift_force") == quantities.end() ||
@@ -101,17 +131,11 @@ Consequence static_consequence(const dynamics::Model& before, const std::vector<
     const dynamics::Conditions held = middle_of(experiment);
     const std::vector<Balance> old_list = balances(before, held, low, high);
     result.equilibria = paired(old_list, uses.empty() ? old_list : balances(after, held, low, high));
-    std::string at;
-    for (const Channel channel : {Channel::speed, Channel::jet_voltage, Channel::pitch}) {
-        if (held.has(channel)) {
-            at += (at.empty() ? "" : ", ") + std::string(dynamics::channel_name(channel)) + " " +
-                  core::format_number(held[channel], 3) + " " + dynamics::channel_unit(channel);
-        }
-    }
+    const std::string at = text_of(held);
     result.text += "Equilibria of lift and a net weight of " + core::format_number(before.vehicle.net_weight, 3) +
                    " N between the measured gaps" + (at.empty() ? "" : " at " + at) +
                    (result.equilibria.empty() ? ": there are none." : ".");
-    if (body.empty() && !uses.empty()) {
+    if (sides.body.empty() && !uses.empty()) {
         return result;
     }
     map_if_possible(result, [&] {

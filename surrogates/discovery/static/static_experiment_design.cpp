@@ -133,6 +133,45 @@ std::string static_told_apart(const StaticExperiment& experiment, const FittedHy
                          : core::format_number(std::min(repeats, most_repeats), 4) + " readings there decide");
 }
 
+namespace {
+
+/// Two explanations that the next set points are to tell apart, and what for.
+struct Question {
+    std::vector<dynamics::EffectUse> a, b;
+    std::string purpose;
+};
+
+Question question(const StaticExperiment& experiment, const std::vector<FittedHypothesis>& fitted,
+                  const Attribution& attribution, const Discovery& result) {
+    const FittedHypothesis& best = fitted[attribution.shares.front().hypothesis];
+    Question ask{best.hypothesis.with(best.fit.parameters), {}, "to confirm " + best.hypothesis.label()};
+    if (result.verdict == "effect" && attribution.shares.size() > 1) {
+        // the likeliest rival that set points can tell from it at all
+        const FittedHypothesis* rival = nullptr;
+        for (std::size_t k = 1; k < attribution.shares.size(); ++k) {
+            rival = &fitted[attribution.shares[k].hypothesis];
+            ask.b = rival->hypothesis.with(rival->fit.parameters);
+            if (separated(experiment, ask.a, ask.b).front().separation > same_everywhere) {
+                break;
+            }
+        }
+        ask.purpose = "to tell " + best.hypothesis.label() + " from " + rival->hypothesis.label();
+    } else if (result.verdict == "none") {
+        // the effect that came nearest, at its limit
+        std::vector<double> p = best.fit.parameters;
+        p.front() += 3 * best.fit.sigma.front();
+        ask.a = best.hypothesis.with(p);
+        ask.purpose = "to see " + best.hypothesis.label() + " below today's limit";
+    } else if (result.verdict == "unknown" && !result.effects.empty()) {
+        // where the correction is largest; levels between the measured ones show its shape
+        ask.a = result.effects.front().uses;
+        ask.purpose = "to see the law behind what depends on " + list_of(result.depends_on);
+    }
+    return ask;
+}
+
+}  // namespace
+
 void next_static_experiment(const StaticExperiment& experiment, const std::vector<FittedHypothesis>& fitted,
                             const Attribution& attribution, std::uint64_t /*seed*/, Discovery& result) {
     if (attribution.shares.empty()) {
@@ -140,35 +179,8 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
             "set points other than those measured; the catalogue has no effect that these could show";
         return;
     }
-    const FittedHypothesis& best = fitted[attribution.shares.front().hypothesis];
-    const FittedHypothesis* rival = nullptr;
-    std::vector<dynamics::EffectUse> a = best.hypothesis.with(best.fit.parameters);
-    std::vector<dynamics::EffectUse> b;
-    std::string purpose;
-    if (result.verdict == "effect" && attribution.shares.size() > 1) {
-        // the likeliest rival that set points can tell from it at all
-        for (std::size_t k = 1; k < attribution.shares.size(); ++k) {
-            rival = &fitted[attribution.shares[k].hypothesis];
-            b = rival->hypothesis.with(rival->fit.parameters);
-            if (separated(experiment, a, b).front().separation > same_everywhere) {
-                break;
-            }
-        }
-        purpose = "to tell " + best.hypothesis.label() + " from " + rival->hypothesis.label();
-    } else if (result.verdict == "none") {
-        // the effect that came nearest, at its limit
-        std::vector<double> p = best.fit.parameters;
-        p.front() += 3 * best.fit.sigma.front();
-        a = best.hypothesis.with(p);
-        purpose = "to see " + best.hypothesis.label() + " below today's limit";
-    } else if (result.verdict == "unknown" && !result.effects.empty()) {
-        // where the correction is largest; levels between the measured ones show its shape
-        a = result.effects.front().uses;
-        purpose = "to see the law behind what depends on " + list_of(result.depends_on);
-    } else {
-        purpose = "to confirm " + best.hypothesis.label();
-    }
-    const std::vector<Candidate> list = separated(experiment, a, b);
+    const Question ask = question(experiment, fitted, attribution, result);
+    const std::vector<Candidate> list = separated(experiment, ask.a, ask.b);
     std::vector<Candidate> taken;
     for (const Candidate& candidate : list) {
         if (taken.size() < 8 && candidate.separation > worth_measuring * list.front().separation) {
@@ -181,7 +193,7 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
         square += repeats * candidate.separation * candidate.separation;
     }
     result.next_power = chance_to_settle(std::sqrt(square));
-    result.next_experiment = purpose + ": " + std::to_string(taken.size()) + " set points, " +
+    result.next_experiment = ask.purpose + ": " + std::to_string(taken.size()) + " set points, " +
                              core::format_number(repeats, 2) + " readings each in mixed order, first at " +
                              where(experiment, list.front()) + "; " + settling_text(result.next_power) +
                              " (next-experiment.csv)";

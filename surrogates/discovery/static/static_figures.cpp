@@ -10,7 +10,6 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/discovery/statistics.h"
-#include "surrogates/discovery/wording.h"
 #include "surrogates/tables/analysis/figures.h"
 
 namespace underbody::discovery {
@@ -70,56 +69,67 @@ core::FigurePoints binned(const std::vector<std::pair<double, double>>& sorted, 
     return means;
 }
 
-core::Figure residual_figure(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
-                             const std::vector<dynamics::EffectUse>& uses, std::size_t quantity, Channel channel) {
-    const Shown unit = shown(channel);
-    const std::string& name = experiment.quantities()[quantity];
+/// What declared model and found one leave of each reading, over what it hangs on.
+struct LeftOver {
     std::vector<std::pair<double, double>> before, after;
-    double sigma = 0;
-    double largest = 0;
+    double sigma = 0;    ///< of a reading
+    double largest = 0;  ///< of `before`
+};
+
+LeftOver left_over(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
+                   const std::vector<dynamics::EffectUse>& uses, std::size_t quantity, Channel channel, double factor) {
+    LeftOver left;
     for (const std::size_t i : chosen) {
         const Observation& one = experiment.observations()[i];
         if (one.quantity != quantity) {
             continue;
         }
-        const double x = one.at[channel] * unit.factor;
-        before.emplace_back(x, one.value - experiment.predict(one, {}));
-        after.emplace_back(x, one.value - experiment.predict(one, uses));
-        largest = std::max(largest, std::abs(before.back().second));
-        sigma = experiment.sigma(one);
+        const double x = one.at[channel] * factor;
+        left.before.emplace_back(x, one.value - experiment.predict(one, {}));
+        left.after.emplace_back(x, one.value - experiment.predict(one, uses));
+        left.largest = std::max(left.largest, std::abs(left.before.back().second));
+        left.sigma = experiment.sigma(one);
     }
-    if (before.empty()) {
+    return left;
+}
+
+core::Figure residual_figure(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
+                             const std::vector<dynamics::EffectUse>& uses, std::size_t quantity, Channel channel) {
+    const Shown unit = shown(channel);
+    const std::string& name = experiment.quantities()[quantity];
+    LeftOver left = left_over(experiment, chosen, uses, quantity, channel, unit.factor);
+    if (left.before.empty()) {
         return {};
     }
-    const double scale = largest < 1 ? 1000 : 1;
-    core::FigurePoints cloud;
-    cloud.name = "readings less declared model";
-    cloud.colour = {190, 190, 190, 255};
-    cloud.size = 4;
-    for (auto* list : {&before, &after}) {
+    const double scale = left.largest < 1 ? 1000 : 1;
+    for (auto* list : {&left.before, &left.after}) {
         for (auto& [x, y] : *list) {
             y *= scale;
         }
     }
-    for (const auto& [x, y] : before) {
+    core::FigurePoints cloud;
+    cloud.name = "readings less declared model";
+    cloud.colour = {190, 190, 190, 255};
+    cloud.size = 4;
+    for (const auto& [x, y] : left.before) {
         cloud.x.push_back(x);
         cloud.y.push_back(y);
     }
-    std::sort(before.begin(), before.end());
-    std::sort(after.begin(), after.end());
+    std::sort(left.before.begin(), left.before.end());
+    std::sort(left.after.begin(), left.after.end());
     core::Figure figure;
     figure.title = "What the model leaves of " + name + " over " + dynamics::channel_name(channel);
     figure.x = {dynamics::channel_name(channel), unit.unit, 0, 0,
-                tables::spans_decades(before.front().first, before.back().first)};
+                tables::spans_decades(left.before.front().first, left.before.back().first)};
     figure.y = {"measured less model", (scale > 1 ? "m" : "") + core::find_quantity(name)->unit, 0, 0, false};
     figure.lines.push_back({false, 0, "", {60, 60, 60, 255}, false});
     figure.lines.push_back(
-        {false, 2 * sigma * scale, "two standard deviations of a reading", {120, 120, 120, 255}, true});
-    figure.lines.push_back({false, -2 * sigma * scale, "", {120, 120, 120, 255}, true});
+        {false, 2 * left.sigma * scale, "two standard deviations of a reading", {120, 120, 120, 255}, true});
+    figure.lines.push_back({false, -2 * left.sigma * scale, "", {120, 120, 120, 255}, true});
     figure.points.push_back(std::move(cloud));
-    figure.points.push_back(binned(before, "means, as declared", core::palette(1)));
+    figure.points.push_back(binned(left.before, "means, as declared", core::palette(1)));
     if (!uses.empty()) {
-        figure.points.push_back(binned(after, "means, with what was found", core::palette(0)));
+        figure.points.push_back(binned(left.after, "means, with what was found", core::palette(0)));
     }
     figure.caption =
         uses.empty() ? "Grey: every reading that was used; means with their errors. Nothing stands out of the noise."

@@ -146,46 +146,49 @@ void add_gain_of_rows(const DesignMatrix& basis, const std::vector<double>& y, s
 
 }  // namespace
 
+StaticStructure::OfQuantity StaticStructure::best_of(std::size_t quantity, const std::vector<double>& residuals) const {
+    OfQuantity own;
+    const double penalty = std::log(static_cast<double>(residuals.size()) / static_cast<double>(quantities_));
+    double best = core::no_limit;
+    double strongest = 0;
+    std::size_t count = 0;
+    for (const Test& test : tests_) {
+        if (test.quantity != quantity) {
+            continue;
+        }
+        ++count;
+        const double gain = explained_square(test.basis, residuals);
+        const double degrees = static_cast<double>(test.basis.columns);
+        strongest = std::max(strongest, evidence(gain, test.basis.columns));
+        const double criterion = degrees * penalty - gain;
+        if (criterion < best) {
+            best = criterion;
+            own.test = &test;
+            own.fit.variables.clear();
+            for (const Channel channel : test.variables) {
+                own.fit.variables.emplace_back(dynamics::channel_name(channel));
+            }
+            own.fit.gain = gain;
+            own.fit.degrees = degrees;
+        }
+    }
+    own.fit.p = std::min(1.0, std::pow(10.0, -strongest) * static_cast<double>(std::max<std::size_t>(count, 1)));
+    return own;
+}
+
 SmoothFit StaticStructure::best(const std::vector<double>& residuals) const {
     SmoothFit whole;
     double smallest = 1;
-    const double penalty = std::log(static_cast<double>(residuals.size()) / static_cast<double>(quantities_));
-    std::vector<SmoothFit> by_quantity(quantities_);
-    std::vector<const Test*> chosen(quantities_, nullptr);
+    std::vector<OfQuantity> by_quantity;
     for (std::size_t q = 0; q < quantities_; ++q) {
-        double best = core::no_limit;
-        double strongest = 0;
-        std::size_t count = 0;
-        SmoothFit& own = by_quantity[q];
-        for (const Test& test : tests_) {
-            if (test.quantity != q) {
-                continue;
-            }
-            ++count;
-            const double gain = explained_square(test.basis, residuals);
-            const double degrees = static_cast<double>(test.basis.columns);
-            strongest = std::max(strongest, evidence(gain, test.basis.columns));
-            const double criterion = degrees * penalty - gain;
-            if (criterion < best) {
-                best = criterion;
-                chosen[q] = &test;
-                own.variables.clear();
-                for (const Channel channel : test.variables) {
-                    own.variables.emplace_back(dynamics::channel_name(channel));
-                }
-                own.gain = gain;
-                own.degrees = degrees;
-            }
-        }
-        own.p = std::min(1.0, std::pow(10.0, -strongest) * static_cast<double>(std::max<std::size_t>(count, 1)));
-        smallest = std::min(smallest, own.p);
+        by_quantity.push_back(best_of(q, residuals));
+        smallest = std::min(smallest, by_quantity.back().fit.p);
     }
     whole.gain_of_row.assign(residuals.size(), 0);
-    for (std::size_t q = 0; q < quantities_; ++q) {
-        const SmoothFit& own = by_quantity[q];
+    for (const auto& [own, test] : by_quantity) {
         if (own.p < shows_structure || own.p == smallest) {
-            if (chosen[q] != nullptr) {
-                add_gain_of_rows(chosen[q]->basis, residuals, whole.gain_of_row);
+            if (test != nullptr) {
+                add_gain_of_rows(test->basis, residuals, whole.gain_of_row);
             }
             whole.gain += own.gain;
             whole.degrees += own.degrees;
@@ -423,6 +426,91 @@ std::vector<double> with_fade(std::vector<double> lines) {
     return lines;
 }
 
+/// Residuals of one quantity, and where they were seen.
+struct SeenResiduals {
+    std::vector<std::vector<double>> values;  ///< of each variable
+    std::vector<double> y;
+    std::vector<std::size_t> set_point;
+};
+
+SeenResiduals residuals_of(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
+                           const std::vector<Channel>& variables, std::size_t quantity,
+                           const std::vector<double>& residuals) {
+    SeenResiduals seen;
+    seen.values.resize(variables.size());
+    for (std::size_t row = 0; row < chosen.size(); ++row) {
+        const Observation& one = experiment.observations()[chosen[row]];
+        if (one.quantity == quantity) {
+            for (std::size_t v = 0; v < variables.size(); ++v) {
+                seen.values[v].push_back(one.at[variables[v]]);
+            }
+            seen.y.push_back(residuals[row]);
+            seen.set_point.push_back(one.set_point);
+        }
+    }
+    return seen;
+}
+
+/// The form whose error is least where it was not fitted.
+std::unique_ptr<CorrectionShape> best_shape(const std::vector<Channel>& variables, const SeenResiduals& seen) {
+    std::unique_ptr<CorrectionShape> shape;
+    double best = core::no_limit;
+    for (const auto& [power, columns] : correction_forms(variables)) {
+        auto trial = std::make_unique<CorrectionShape>(seen.values, power, columns);
+        if (3 * trial->columns() > seen.y.size() && shape != nullptr) {
+            continue;  // as many numbers as that would follow the noise
+        }
+        const double error = held_out_square(trial->design(seen.values, seen.y.size()), seen.y, seen.set_point);
+        if (error < best) {
+            best = error;
+            shape = std::move(trial);
+        }
+    }
+    return shape;
+}
+
+/// A fitted form on the grid of its table: no larger than the residual that it explains, and nothing on the outer
+/// lines.
+struct GriddedCorrection {
+    std::vector<std::vector<double>> grid;  ///< of each variable
+    std::vector<double> value;
+};
+
+GriddedCorrection on_grid(const CorrectionShape& shape, const SeenResiduals& seen) {
+    const RidgeFit fit = ridge_fit(shape.design(seen.values, seen.y.size()), seen.y);
+    std::vector<std::vector<double>> lines;
+    std::size_t count = 1;
+    for (const std::vector<double>& variable : seen.values) {
+        lines.push_back(with_fade(grid_lines(variable)));
+        count *= lines.back().size();
+    }
+    double largest = 0;
+    for (const double one : seen.y) {
+        largest = std::max(largest, std::abs(one));
+    }
+    GriddedCorrection on;
+    on.grid.assign(lines.size(), std::vector<double>(count));
+    on.value.resize(count);
+    std::vector<double> point(lines.size()), out(shape.columns());
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t rest = i;
+        bool faded = false;
+        for (std::size_t v = 0; v < lines.size(); ++v) {
+            const std::size_t line = rest % lines[v].size();
+            faded = faded || line == 0 || line + 1 == lines[v].size();
+            on.grid[v][i] = lines[v][line];
+            point[v] = std::clamp(on.grid[v][i], lines[v][1], lines[v][lines[v].size() - 2]);
+            rest /= lines[v].size();
+        }
+        shape.evaluate(point.data(), out.data());
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            on.value[i] += out[k] * fit.coefficients[k];
+        }
+        on.value[i] = faded ? 0 : std::clamp(on.value[i], -largest, largest);
+    }
+    return on;
+}
+
 }  // namespace
 
 dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const std::vector<std::size_t>& chosen,
@@ -433,71 +521,16 @@ dynamics::EffectUse smooth_correction(const StaticExperiment& experiment, const 
         const auto scales = [](Channel c) { return c == Channel::speed || c == Channel::jet_voltage; };
         return scales(a) < scales(b);
     });
-    std::vector<std::vector<double>> values(variables.size());
-    std::vector<double> y;
-    std::vector<std::size_t> set_point;
-    for (std::size_t row = 0; row < chosen.size(); ++row) {
-        const Observation& one = experiment.observations()[chosen[row]];
-        if (one.quantity == quantity) {
-            for (std::size_t v = 0; v < variables.size(); ++v) {
-                values[v].push_back(one.at[variables[v]]);
-            }
-            y.push_back(residuals[row]);
-            set_point.push_back(one.set_point);
-        }
-    }
-    std::unique_ptr<CorrectionShape> shape;
-    double best = core::no_limit;
-    for (const auto& [power, columns] : correction_forms(variables)) {
-        auto trial = std::make_unique<CorrectionShape>(values, power, columns);
-        if (3 * trial->columns() > y.size() && shape != nullptr) {
-            continue;  // as many numbers as that would follow the noise
-        }
-        const double error = held_out_square(trial->design(values, y.size()), y, set_point);
-        if (error < best) {
-            best = error;
-            shape = std::move(trial);
-        }
-    }
-    const RidgeFit fit = ridge_fit(shape->design(values, y.size()), y);
-    std::vector<double> point(variables.size());
-    std::vector<double> out;
-    std::vector<std::vector<double>> lines;
-    std::size_t count = 1;
-    for (const std::vector<double>& variable : values) {
-        lines.push_back(with_fade(grid_lines(variable)));
-        count *= lines.back().size();
-    }
-    double largest = 0;  // no larger than the residual that it explains
-    for (const double one : y) {
-        largest = std::max(largest, std::abs(one));
-    }
-    std::vector<std::vector<double>> grid(variables.size(), std::vector<double>(count));
-    std::vector<double> correction(count);
-    out.resize(shape->columns());
-    for (std::size_t i = 0; i < count; ++i) {
-        std::size_t rest = i;
-        bool faded = false;
-        for (std::size_t v = 0; v < variables.size(); ++v) {
-            const std::size_t line = rest % lines[v].size();
-            faded = faded || line == 0 || line + 1 == lines[v].size();
-            grid[v][i] = lines[v][line];
-            point[v] = std::clamp(grid[v][i], lines[v][1], lines[v][lines[v].size() - 2]);
-            rest /= lines[v].size();
-        }
-        shape->evaluate(point.data(), out.data());
-        for (std::size_t k = 0; k < out.size(); ++k) {
-            correction[i] += out[k] * fit.coefficients[k];
-        }
-        correction[i] = faded ? 0 : std::clamp(correction[i], -largest, largest);
-    }
+    const SeenResiduals seen = residuals_of(experiment, chosen, variables, quantity, residuals);
+    const GriddedCorrection correction = on_grid(*best_shape(variables, seen), seen);
     core::Table table;
     const std::string& name = experiment.quantities()[quantity];
     table.source = "correction-" + name + ".csv";
     for (std::size_t v = 0; v < variables.size(); ++v) {
-        table.add_numbers(dynamics::channel_name(variables[v]), dynamics::channel_unit(variables[v]), grid[v]);
+        table.add_numbers(dynamics::channel_name(variables[v]), dynamics::channel_unit(variables[v]),
+                          correction.grid[v]);
     }
-    table.add_numbers(name, core::find_quantity(name)->unit, correction);
+    table.add_numbers(name, core::find_quantity(name)->unit, correction.value);
     dynamics::EffectUse use = dynamics::neutral_use("unknown");
     use.quantity = name;
     use.table = tables::ForceTable::fit(table, name);

@@ -29,6 +29,12 @@ public:
     [[nodiscard]] SmoothFit best(const std::vector<double>& residuals) const;
 
 private:
+    struct OfQuantity {
+        SmoothFit fit;
+        const Test* test = nullptr;
+    };
+    [[nodiscard]] OfQuantity best_of(std::size_t quantity, const std::vector<double>& residuals) const;
+
     std::size_t quantities_ = 1;
     std::vector<Test> tests_;
 };
