@@ -51,65 +51,65 @@ Compiled compile(const SeparatedPlant& plant, const Layout& layout) {
     return out;
 }
 
-// Row (u, w, h, auxiliaries, dw, dh, their rates), rates exact by the chain rule.
+// Gap, velocity and what follows from them at one place.
+struct Place {
+    double h = 0, w = 0, dw = 0;
+    double ground = 0, ground_slope = 0, drag = 0, drag_rate = 0;
+    DragSlopes drag_slopes;
+};
+
+// Value and rate, exact by the chain rule.
+std::pair<double, double> rated(Auxiliary what, const SeparatedPlant& p, const Place& at) {
+    const double h = at.h, w = at.w;
+    switch (what) {
+        case Auxiliary::ground_force:
+            return {at.ground, at.ground_slope * w};
+        case Auxiliary::drag_force:
+            return {at.drag, at.drag_rate};
+        case Auxiliary::total_force:
+            return {at.ground - at.drag, at.ground_slope * w - at.drag_rate};
+        case Auxiliary::ground_slope: {
+            // The curve's second derivative by a central difference of its slope over 20 micrometres.
+            double up = 0, down = 0;
+            p.ground_force(h + 1e-5, up);
+            p.ground_force(h - 1e-5, down);
+            return {at.ground_slope, (up - down) / 2e-5 * w};
+        }
+        case Auxiliary::drag_slope: {
+            // Likewise over 2 micrometres per second.
+            DragSlopes up, down;
+            p.drag_force(h, w + 1e-6, up);
+            p.drag_force(h, w - 1e-6, down);
+            return {at.drag_slopes.velocity, (up.velocity - down.velocity) / 2e-6 * at.dw};
+        }
+        case Auxiliary::gap_squared:
+            return {h * h, 2 * h * w};
+        case Auxiliary::gap_cubed:
+            return {h * h * h, 3 * h * h * w};
+        case Auxiliary::velocity_squared:
+            return {w * std::abs(w), 2 * std::abs(w) * at.dw};
+    }
+    return {};
+}
+
+// Row (u, w, h, auxiliaries, dw, dh, their rates).
 void fill(const Compiled& c, double u, double w, double h, double* row) {
     const SeparatedPlant& p = *c.plant;
     const std::size_t n = 2 + c.auxiliaries.size();
-    double ground_slope = 0;
-    DragSlopes drag_slopes;
-    const double ground = p.ground_force(h, ground_slope), drag = p.drag_force(h, w, drag_slopes);
-    const double dw = p.acceleration(h, w, u), drag_rate = drag_slopes.velocity * dw + drag_slopes.gap * w;
+    Place at;
+    at.h = h;
+    at.w = w;
+    at.dw = p.acceleration(h, w, u);
+    at.ground = p.ground_force(h, at.ground_slope);
+    at.drag = p.drag_force(h, w, at.drag_slopes);
+    at.drag_rate = at.drag_slopes.velocity * at.dw + at.drag_slopes.gap * w;
     row[0] = u;
     row[1] = w;
     row[2] = h;
-    row[1 + n] = dw;
+    row[1 + n] = at.dw;
     row[2 + n] = w;
     for (std::size_t i = 0; i < c.auxiliaries.size(); ++i) {
-        double value = 0, rate = 0;
-        switch (c.auxiliaries[i]) {
-            case Auxiliary::ground_force:
-                value = ground;
-                rate = ground_slope * w;
-                break;
-            case Auxiliary::drag_force:
-                value = drag;
-                rate = drag_rate;
-                break;
-            case Auxiliary::total_force:
-                value = ground - drag;
-                rate = ground_slope * w - drag_rate;
-                break;
-            case Auxiliary::ground_slope: {
-                // The curve's second derivative by a central difference of its slope over 20 micrometres.
-                double up = 0, down = 0;
-                p.ground_force(h + 1e-5, up);
-                p.ground_force(h - 1e-5, down);
-                value = ground_slope;
-                rate = (up - down) / 2e-5 * w;
-                break;
-            }
-            case Auxiliary::drag_slope: {
-                // Likewise over 2 micrometres per second.
-                DragSlopes up, down;
-                p.drag_force(h, w + 1e-6, up);
-                p.drag_force(h, w - 1e-6, down);
-                value = drag_slopes.velocity;
-                rate = (up.velocity - down.velocity) / 2e-6 * dw;
-                break;
-            }
-            case Auxiliary::gap_squared:
-                value = h * h;
-                rate = 2 * h * w;
-                break;
-            case Auxiliary::gap_cubed:
-                value = h * h * h;
-                rate = 3 * h * h * w;
-                break;
-            case Auxiliary::velocity_squared:
-                value = w * std::abs(w);
-                rate = 2 * std::abs(w) * dw;
-                break;
-        }
+        const auto [value, rate] = rated(c.auxiliaries[i], p, at);
         row[3 + i] = value;
         row[3 + n + i] = rate;
     }

@@ -21,13 +21,39 @@ struct Bound {
     double ground = 0, drag = 0, total = 0;
 };
 
-Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double gap, double speed) {
-    const double omega = 2 * std::numbers::pi / o.window, s = 1 / plant.virtual_mass, dt = o.sample_step;
+double largest_ground_force(const SeparatedPlant& plant) {
     double largest = 1e-4, slope = 0;
     for (int i = 0; i <= 100; ++i) {
         largest =
             std::max(largest, std::abs(plant.ground_force(plant.lower + (plant.upper - plant.lower) * i / 100, slope)));
     }
+    return largest;
+}
+
+/// A reading of one state.
+void take_reading(Matrix& p, std::size_t state, double sigma) {
+    const double spread = p(state, state) + sigma * sigma;
+    const Vector column = p.column_of(state);
+    for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            p(i, j) -= column[i] * column[j] / spread;
+        }
+    }
+}
+
+/// One standard deviation of a sum of states.
+double deviation_along(const Matrix& p, const Vector& g) {
+    const Vector v = p * g;
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        sum += g[i] * v[i];
+    }
+    return std::sqrt(std::max(sum, 0.0));
+}
+
+Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double gap, double speed) {
+    const double omega = 2 * std::numbers::pi / o.window, s = 1 / plant.virtual_mass, dt = o.sample_step;
+    const double largest = largest_ground_force(plant);
     Matrix p = Matrix::diagonal({1e-2, 1e-2, largest * largest, o.drag_prior * o.drag_prior});
     const auto steps = static_cast<std::size_t>(std::round(o.window / dt));
     double ground_slope = 0, drag = 0;
@@ -37,16 +63,9 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
         const double h = gap + speed / omega * std::sin(omega * t), w = speed * std::cos(omega * t);
         plant.ground_force(h, ground_slope);
         drag = plant.drag_force(h, w, drag_slopes);
-        for (int sensor = 0; sensor < (o.noise.velocity > 0 ? 2 : 1); ++sensor) {
-            const std::size_t c = sensor == 0 ? 0 : 1;
-            const double sigma = sensor == 0 ? o.noise.gap : o.noise.velocity;
-            const double spread = p(c, c) + sigma * sigma;
-            const Vector column = p.column_of(c);
-            for (std::size_t i = 0; i < 4; ++i) {
-                for (std::size_t j = 0; j < 4; ++j) {
-                    p(i, j) -= column[i] * column[j] / spread;
-                }
-            }
+        take_reading(p, 0, o.noise.gap);
+        if (o.noise.velocity > 0) {
+            take_reading(p, 1, o.noise.velocity);
         }
         if (k == steps) {
             break;
@@ -63,16 +82,9 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
         p(2, 1) += q * s * dt * dt / 2;
         p(1, 1) += q * s * s * dt * dt * dt / 3;
     }
-    const auto along = [&](const Vector& g) {
-        const Vector v = p * g;
-        double sum = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            sum += g[i] * v[i];
-        }
-        return std::sqrt(std::max(sum, 0.0));
-    };
-    return {along({ground_slope, 0, 1, 0}), along({drag_slopes.gap, drag_slopes.velocity, 0, drag}),
-            along({ground_slope - drag_slopes.gap, -drag_slopes.velocity, 1, -drag})};
+    return {deviation_along(p, {ground_slope, 0, 1, 0}),
+            deviation_along(p, {drag_slopes.gap, drag_slopes.velocity, 0, drag}),
+            deviation_along(p, {ground_slope - drag_slopes.gap, -drag_slopes.velocity, 1, -drag})};
 }
 
 }  // namespace

@@ -347,16 +347,82 @@ std::string source(const ExportGrid& grid, const std::string& guid) {
     return text + interval_function(grid) + wrapper;
 }
 
+/// The variables of a model description, and the units that they have.
+class Variables {
+public:
+    void input(const std::string& name, const std::string& unit, const std::string& what, double start) {
+        add(name, unit, what, "input", " start=\"" + core::format_number(start) + "\"");
+    }
+    void output(const std::string& name, const std::string& unit, const std::string& what) {
+        add(name, unit, what, "output", "");
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] const std::vector<std::string>& units() const { return units_; }
+
+private:
+    void add(const std::string& name, const std::string& unit, const std::string& what, const char* causality,
+             const std::string& start) {
+        text_ += "    <ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(count_++) +
+                 "\" description=\"" + core::escape_html(what) + "\" causality=\"" + causality +
+                 "\" variability=\"continuous\">\n      <Real unit=\"" + core::escape_html(unit) + "\"" + start +
+                 "/>\n    </ScalarVariable>\n";
+        if (std::find(units_.begin(), units_.end(), unit) == units_.end()) {
+            units_.push_back(unit);
+        }
+    }
+
+    std::string text_;
+    std::size_t count_ = 0;
+    std::vector<std::string> units_;
+};
+
+Variables variables_of(const ExportGrid& grid) {
+    Variables all;
+    for (const auto& axis : grid.axes) {
+        all.input(axis.name, axis.unit,
+                  "axis, " + core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6),
+                  start_value(axis));
+    }
+    for (const auto& q : grid.quantities) {
+        all.output(q.name, q.unit, q.meaning.empty() ? q.name : q.meaning);
+        for (const auto& axis : grid.axes) {
+            all.output(q.name + "_per_" + axis.name, q.unit + "/(" + axis.unit + ")", "slope");
+        }
+        all.output(q.name + "_sigma", q.unit, "one standard deviation");
+    }
+    const std::string flags = grid.quantities.size() > 1 ? "" : grid.first().name + "_";
+    all.output(flags + "outside", "1", "1 when the point lies outside the table");
+    all.output(flags + "no_data", "1",
+               "1 where no points of the table lie around: outside, or in an empty corner of its box");
+    return all;
+}
+
+/// Every output depends on every input.
+std::string structure(std::size_t inputs, std::size_t variables) {
+    std::string all_inputs;
+    for (std::size_t k = 1; k <= inputs; ++k) {
+        all_inputs += (k == 1 ? "" : " ") + std::to_string(k);
+    }
+    std::string xml;
+    for (const char* list : {"Outputs", "InitialUnknowns"}) {
+        xml += std::string("    <") + list + ">\n";
+        for (std::size_t i = inputs + 1; i <= variables; ++i) {
+            xml += "      <Unknown index=\"" + std::to_string(i) + "\" dependencies=\"" + all_inputs + "\"/>\n";
+        }
+        xml += std::string("    </") + list + ">\n";
+    }
+    return xml;
+}
+
 std::string description(const ExportGrid& grid, const std::string& guid) {
-    const std::size_t n = grid.axes.size();
     std::string origin;
     for (const auto& line : header_lines(grid)) {
         origin += (origin.empty() ? "" : ". ") + line;
     }
-    const auto escaped = [](const std::string& t) { return core::escape_html(t); };
     std::string xml =
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" modelName=\"" + grid.name +
-        "\" guid=\"" + guid + "\" description=\"" + escaped(origin) +
+        "\" guid=\"" + guid + "\" description=\"" + core::escape_html(origin) +
         "\" generationTool=\"Underbody\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"0\">\n";
     for (const char* kind : {"ModelExchange", "CoSimulation"}) {
         xml += std::string("  <") + kind + " modelIdentifier=\"" + grid.name +
@@ -364,56 +430,14 @@ std::string description(const ExportGrid& grid, const std::string& guid) {
                (kind[0] == 'C' ? " canHandleVariableCommunicationStepSize=\"true\"" : "") +
                ">\n    <SourceFiles>\n      <File name=\"fmu.c\"/>\n    </SourceFiles>\n  </" + kind + ">\n";
     }
-    std::vector<std::string> units;
-    std::string variables;
-    std::size_t reference = 0;
-    const auto variable = [&](const std::string& name, const std::string& unit, const std::string& what, bool input,
-                              double start) {
-        variables += "    <ScalarVariable name=\"" + name + "\" valueReference=\"" + std::to_string(reference++) +
-                     "\" description=\"" + escaped(what) + "\" causality=\"" + (input ? "input" : "output") +
-                     "\" variability=\"continuous\">\n      <Real unit=\"" + escaped(unit) + "\"" +
-                     (input ? " start=\"" + core::format_number(start) + "\"" : "") + "/>\n    </ScalarVariable>\n";
-        for (const auto& known : units) {
-            if (known == unit) {
-                return;
-            }
-        }
-        units.push_back(unit);
-    };
-    for (const auto& axis : grid.axes) {
-        variable(axis.name, axis.unit,
-                 "axis, " + core::format_number(axis.lower, 6) + " to " + core::format_number(axis.upper, 6), true,
-                 start_value(axis));
-    }
-    for (const auto& q : grid.quantities) {
-        variable(q.name, q.unit, q.meaning.empty() ? q.name : q.meaning, false, 0);
-        for (const auto& axis : grid.axes) {
-            variable(q.name + "_per_" + axis.name, q.unit + "/(" + axis.unit + ")", "slope", false, 0);
-        }
-        variable(q.name + "_sigma", q.unit, "one standard deviation", false, 0);
-    }
-    const std::string flags = grid.quantities.size() > 1 ? "" : grid.first().name + "_";
-    variable(flags + "outside", "1", "1 when the point lies outside the table", false, 0);
-    variable(flags + "no_data", "1",
-             "1 where no points of the table lie around: outside, or in an empty corner of its box", false, 0);
+    const Variables variables = variables_of(grid);
     xml += "  <UnitDefinitions>\n";
-    for (const auto& unit : units) {
-        xml += "    <Unit name=\"" + escaped(unit) + "\"/>\n";
+    for (const auto& unit : variables.units()) {
+        xml += "    <Unit name=\"" + core::escape_html(unit) + "\"/>\n";
     }
-    xml += "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"/>\n  <ModelVariables>\n" +
-           variables + "  </ModelVariables>\n  <ModelStructure>\n";
-    for (const char* list : {"Outputs", "InitialUnknowns"}) {
-        xml += std::string("    <") + list + ">\n";
-        for (std::size_t i = n + 1; i <= reference; ++i) {
-            std::string inputs;
-            for (std::size_t k = 1; k <= n; ++k) {
-                inputs += (k == 1 ? "" : " ") + std::to_string(k);
-            }
-            xml += "      <Unknown index=\"" + std::to_string(i) + "\" dependencies=\"" + inputs + "\"/>\n";
-        }
-        xml += std::string("    </") + list + ">\n";
-    }
-    return xml + "  </ModelStructure>\n</fmiModelDescription>\n";
+    return xml + "  </UnitDefinitions>\n  <DefaultExperiment startTime=\"0\" stopTime=\"1\"/>\n  <ModelVariables>\n" +
+           variables.text() + "  </ModelVariables>\n  <ModelStructure>\n" +
+           structure(grid.axes.size(), variables.count()) + "  </ModelStructure>\n</fmiModelDescription>\n";
 }
 
 }  // namespace

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <nlopt.hpp>
-#include <numeric>
 #include <utility>
 
 #include "core/error.h"
 #include "core/no_limit.h"
-#include "core/text.h"
 #include "surrogates/tables/search/acquisition.h"
 #include "surrogates/tables/search/sampling.h"
 
@@ -355,32 +353,67 @@ void climb(const Acquisition& acquisition, const std::vector<double>& low, const
     }
 }
 
+/// The box of the unit cube that is searched.
+struct Box {
+    std::vector<double> low, high;
+};
+
+/// A place in the unit cube and its value.
+using Tried = std::pair<double, std::vector<double>>;
+
+/// Of a plan that fills the box the six of the largest value that hold what must hold.
+template <class Value, class Holds>
+std::vector<Tried> best_places(const Box& box, std::uint64_t seed, const Value& value, const Holds& holds) {
+    const std::size_t axes = box.low.size();
+    std::vector<Tried> tried;
+    for (std::vector<double>& u : sobol_plan(std::min<std::size_t>(4000, 500 * axes), axes, seed)) {
+        for (std::size_t v = 0; v < axes; ++v) {
+            u[v] = box.low[v] + u[v] * (box.high[v] - box.low[v]);
+        }
+        const double at = value(u);
+        tried.emplace_back(at, std::move(u));
+    }
+    std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<Tried> best;
+    for (std::size_t i = 0; i < tried.size() && best.size() < 6 && tried[i].first > -1e10; ++i) {
+        if (holds(tried[i].second)) {
+            best.push_back(std::move(tried[i]));
+        }
+    }
+    return best;
+}
+
 }  // namespace
 
-std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, core::Progress& progress) const {
-    const std::size_t axes = problem_.variables.size();
-    std::vector<Candidate> batch;
-    DesignSearch search = with_planned(options);
-    Taken taken(problem_.variables, options);
+std::vector<double> DesignSearch::centre_of_trust(const NextOptions& options, double best) const {
     std::vector<double> centre;
-    const double best = best_of(options.solved);
-    if (options.region && axes > trust_region_from && !std::isnan(best)) {
+    if (options.region && problem_.variables.size() > trust_region_from && !std::isnan(best)) {
         for (const std::vector<double>& x : options.solved) {
             if (best_of({x}) == best) {
-                for (std::size_t v = 0; v < axes; ++v) {
+                for (std::size_t v = 0; v < x.size(); ++v) {
                     centre.push_back(problem_.variables[v].scaled(x[v]));
                 }
                 break;
             }
         }
     }
+    return centre;
+}
+
+std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, core::Progress& progress) const {
+    const std::size_t axes = problem_.variables.size();
+    std::vector<Candidate> batch;
+    DesignSearch search = with_planned(options);
+    Taken taken(problem_.variables, options);
+    const double best = best_of(options.solved);
+    Box box{std::vector<double>(axes, 0.0), std::vector<double>(axes, 1.0)};
+    const std::vector<double> centre = centre_of_trust(options, best);
+    for (std::size_t v = 0; v < centre.size(); ++v) {
+        box.low[v] = std::max(0.0, centre[v] - options.region->length / 2);
+        box.high[v] = std::min(1.0, centre[v] + options.region->length / 2);
+    }
     while (batch.size() < options.count) {
         progress.check();
-        std::vector<double> low(axes, 0.0), high(axes, 1.0);
-        for (std::size_t v = 0; v < centre.size(); ++v) {
-            low[v] = std::max(0.0, centre[v] - options.region->length / 2);
-            high[v] = std::min(1.0, centre[v] + options.region->length / 2);
-        }
         // Surrogates are cheaper than shapes: known limits are asked of those that would be chosen.
         DesignSearch unlimited = search;
         unlimited.problem_.known_limits.clear();
@@ -389,30 +422,16 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
             const double value = taken.holds(x) ? -infinity : by.log_acquisition(x, best, options, nullptr);
             return std::isfinite(value) ? value : -1e10;
         };
-        const auto acquisition = [&](std::span<const double> u) { return value_by(search, u); };
-        std::vector<std::pair<double, std::vector<double>>> tried;
-        const std::size_t candidates = std::min<std::size_t>(4000, 500 * axes);
-        for (std::vector<double>& u : sobol_plan(candidates, axes, options.seed + batch.size())) {
-            for (std::size_t v = 0; v < axes; ++v) {
-                u[v] = low[v] + u[v] * (high[v] - low[v]);
-            }
-            const double value = value_by(unlimited, u);
-            tried.emplace_back(value, std::move(u));
-        }
-        std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-        std::size_t refined = 0;
-        for (std::size_t i = 0; i < tried.size() && refined < 6 && tried[i].first > -1e10; ++i) {
-            if (search.known_limits_hold(unscaled(tried[i].second))) {
-                std::swap(tried[refined++], tried[i]);
-            }
-        }
-        if (refined == 0) {
+        std::vector<Tried> refined = best_places(
+            box, options.seed + batch.size(), [&](std::span<const double> u) { return value_by(unlimited, u); },
+            [&](std::span<const double> u) { return search.known_limits_hold(unscaled(u)); });
+        if (refined.empty()) {
             break;  // no further design meets the known limits
         }
-        for (std::size_t i = 0; i < refined; ++i) {
-            climb(acquisition, low, high, tried[i]);
+        for (Tried& one : refined) {
+            climb([&](std::span<const double> u) { return value_by(search, u); }, box.low, box.high, one);
         }
-        const auto chosen = std::max_element(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(refined),
+        const auto chosen = std::max_element(refined.begin(), refined.end(),
                                              [](const auto& a, const auto& b) { return a.first < b.first; });
         Candidate candidate;
         (void)search.log_acquisition(unscaled(chosen->second), best, options, &candidate);

@@ -141,6 +141,8 @@ private:
     [[nodiscard]] double cost_of(const Objective& objective, double value) const;
     [[nodiscard]] double log_acquisition(std::span<const double> x, double best, const NextOptions& options,
                                          Candidate* described) const;
+    /// Of the region that a search stays in, in the unit cube; empty: the whole cube.
+    [[nodiscard]] std::vector<double> centre_of_trust(const NextOptions& options, double best) const;
     [[nodiscard]] bool known_limits_hold(std::span<const double> x) const;
     [[nodiscard]] std::vector<double> unscaled(std::span<const double> u) const;
     void choose_level(Candidate& candidate, const NextOptions& options) const;
