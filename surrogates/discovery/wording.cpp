@@ -66,11 +66,6 @@ std::string value_text(const FoundParameter& parameter) {
            (unit.empty() ? "" : " " + unit);
 }
 
-std::string number_name(const FoundEffect& effect, const FoundParameter& parameter) {
-    const bool declared = effect.uses.size() == 1 && !effect.uses.front().parameter.empty();
-    return declared && effect.parameters.size() == 1 ? effect.uses.front().parameter : parameter.name;
-}
-
 std::string probability_text(double probability) {
     return probability > 0.995   ? "above 0.99"
            : probability < 0.005 ? "below 0.01"
@@ -124,7 +119,7 @@ namespace {
 std::string named(const FoundEffect& effect) {
     if (effect.uses.size() == 1 && !effect.uses.front().parameter.empty() && effect.parameters.size() == 1) {
         const FoundParameter& value = effect.parameters.front();
-        return "another value of the declared " + number_name(effect, value) + ": " + value_text(value);
+        return "another value of the declared " + effect.uses.front().parameter + ": " + value_text(value);
     }
     std::string text = effect.name;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {

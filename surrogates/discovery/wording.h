@@ -29,8 +29,6 @@ std::string rest_sentence(const Discovery& discovery);
 
 /// "9.8 ± 0.4 mN".
 std::string value_text(const FoundParameter& parameter);
-/// What a number of an effect is called: its name, or of a declared one that is off that: "force.2.factor".
-std::string number_name(const FoundEffect& effect, const FoundParameter& parameter);
 
 /// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
 std::string probability_text(double probability);
