@@ -59,6 +59,8 @@ private:
     void fill_zones();
     void draw_along();
     void ask_tables();
+    /// A sentence a pair of tables; where they differ is marked in the figure.
+    static QString say_differences(Compared& result);
     [[nodiscard]] std::vector<const cases::TableSpec*> tables_of_cases() const;
     [[nodiscard]] double value(const ComparedCase& one, const std::string& quantity) const;
 

@@ -48,34 +48,8 @@ void ExportDialog::build() {
     column->addWidget(halves, 1);
     auto* left = new QWidget;
     auto* form = new QFormLayout(left);
-    format_ = new QComboBox;
-    for (const auto& format : tables::export_formats()) {
-        format_->addItem(qt(format.name + ": " + format.description), qt(format.name));
-    }
-    format_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    form->addRow("&Format", format_);
-    name_ = new QLineEdit(qt(all_.front()->quantity()));
-    form->addRow("&Name", name_);
-    frame_ = new QComboBox;
-    frame_->addItems({"up: lift positive up", "ned: body axes, z down"});
-    form->addRow("F&rame", frame_);
-    single_ = new QCheckBox("&float instead of double (C)");
-    form->addRow(single_);
-    max_error_ = new QLineEdit;
-    max_error_->setPlaceholderText("none: the full grid");
-    form->addRow("&Error allowed, % of the range", max_error_);
-    for (const auto& axis : all_.front()->axes()) {
-        auto* policy = new QComboBox;
-        for (const auto one :
-             {tables::RangePolicy::clamp, tables::RangePolicy::refuse, tables::RangePolicy::extrapolate}) {
-            policy->addItem(qt(tables::to_string(one) + ": " + tables::outside_words(one)), qt(tables::to_string(one)));
-        }
-        policy->setCurrentIndex(policy->findData(qt(tables::to_string(axis.range))));
-        policy->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-        form->addRow("Beyond the ends of " + qt(axis.name), policy);
-        policies_.emplace_back(axis.name, policy);
-        connect(policy, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
-    }
+    add_choices(*form);
+    add_policies(*form);
     facts_ = new QLabel;
     facts_->setWordWrap(true);
     facts_->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -98,6 +72,49 @@ void ExportDialog::build() {
     command_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     command_->setWordWrap(true);
     column->addWidget(command_);
+    add_buttons(*column);
+    connect(format_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    connect(frame_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    connect(single_, &QCheckBox::toggled, soon_, QOverload<>::of(&QTimer::start));
+    connect(name_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
+    connect(max_error_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
+}
+
+void ExportDialog::add_choices(QFormLayout& form) {
+    format_ = new QComboBox;
+    for (const auto& format : tables::export_formats()) {
+        format_->addItem(qt(format.name + ": " + format.description), qt(format.name));
+    }
+    format_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    form.addRow("&Format", format_);
+    name_ = new QLineEdit(qt(all_.front()->quantity()));
+    form.addRow("&Name", name_);
+    frame_ = new QComboBox;
+    frame_->addItems({"up: lift positive up", "ned: body axes, z down"});
+    form.addRow("F&rame", frame_);
+    single_ = new QCheckBox("&float instead of double (C)");
+    form.addRow(single_);
+    max_error_ = new QLineEdit;
+    max_error_->setPlaceholderText("none: the full grid");
+    form.addRow("&Error allowed, % of the range", max_error_);
+}
+
+void ExportDialog::add_policies(QFormLayout& form) {
+    for (const auto& axis : all_.front()->axes()) {
+        auto* policy = new QComboBox;
+        for (const auto one :
+             {tables::RangePolicy::clamp, tables::RangePolicy::refuse, tables::RangePolicy::extrapolate}) {
+            policy->addItem(qt(tables::to_string(one) + ": " + tables::outside_words(one)), qt(tables::to_string(one)));
+        }
+        policy->setCurrentIndex(policy->findData(qt(tables::to_string(axis.range))));
+        policy->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        form.addRow("Beyond the ends of " + qt(axis.name), policy);
+        policies_.emplace_back(axis.name, policy);
+        connect(policy, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
+    }
+}
+
+void ExportDialog::add_buttons(QBoxLayout& column) {
     auto* buttons = new QHBoxLayout;
     prove_ = new QPushButton("&Prove");
     prove_->setToolTip("Compiles the C header with the compiler of this machine and compares it at 200 points");
@@ -108,15 +125,10 @@ void ExportDialog::build() {
     buttons->addStretch(1);
     buttons->addWidget(write_button);
     buttons->addWidget(close_button);
-    column->addLayout(buttons);
+    column.addLayout(buttons);
     connect(prove_, &QPushButton::clicked, this, &ExportDialog::prove);
     connect(write_button, &QPushButton::clicked, this, &ExportDialog::choose_and_write);
     connect(close_button, &QPushButton::clicked, this, &QDialog::close);
-    connect(format_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
-    connect(frame_, QOverload<int>::of(&QComboBox::currentIndexChanged), soon_, QOverload<>::of(&QTimer::start));
-    connect(single_, &QCheckBox::toggled, soon_, QOverload<>::of(&QTimer::start));
-    connect(name_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
-    connect(max_error_, &QLineEdit::textEdited, soon_, QOverload<>::of(&QTimer::start));
 }
 
 std::string ExportDialog::format() const { return format_->currentData().toString().toStdString(); }

@@ -10,8 +10,10 @@
 #include "studio/desktop/state/state.h"
 #include "surrogates/tables/exports/export.h"
 
+class QBoxLayout;
 class QCheckBox;
 class QComboBox;
+class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QPlainTextEdit;
@@ -47,6 +49,9 @@ Q_SIGNALS:
 
 private:
     void build();
+    void add_choices(QFormLayout& form);
+    void add_policies(QFormLayout& form);
+    void add_buttons(QBoxLayout& column);
     void refresh();
     void choose_and_write();
     [[nodiscard]] std::string format() const;

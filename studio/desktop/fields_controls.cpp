@@ -22,8 +22,24 @@ namespace underbody::studio {
 void FieldsPanel::build_controls(QWidget& side) {
     auto* left = new QVBoxLayout(&side);
     left->setContentsMargins(0, 0, 0, 0);
+    add_view_choice(*left);
+    left->addWidget(build_time());
+    add_colours(*left);
+    add_switches(*left);
+    left->addWidget(new QLabel("Zones"));
+    zones_ = new QListWidget;
+    zones_->setAccessibleName("Zones");
+    zones_->setToolTip("Ticked zones are drawn, and set the range of the colours");
+    zones_->setMinimumHeight(60);
+    left->addWidget(zones_, 1);
+    add_cameras(*left);
+    add_body(*left);
+    follow_controls();
+}
+
+void FieldsPanel::add_view_choice(QBoxLayout& left) {
     auto* show = new QLabel("Sho&w");
-    left->addWidget(show);
+    left.addWidget(show);
     view_ = new QComboBox;
     view_->setAccessibleName("Show");
     show->setBuddy(view_);
@@ -39,21 +55,23 @@ void FieldsPanel::build_controls(QWidget& side) {
     view_->setToolTip(
         "The surface to turn by hand, or a picture of the flow: planes and streamlines need a file with its volume");
     view_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    left->addWidget(view_);
-    left->addWidget(build_time());
+    left.addWidget(view_);
+}
+
+void FieldsPanel::add_colours(QBoxLayout& left) {
     auto* colour = new QLabel("&Colour by");
-    left->addWidget(colour);
+    left.addWidget(colour);
     array_ = new QComboBox;
     array_->setToolTip("Which array of the field colours the surface");
     array_->setAccessibleName("Colour by");
     colour->setBuddy(array_);
-    left->addWidget(array_);
-    left->addWidget(new QLabel("Range, the same for all cells"));
+    left.addWidget(array_);
+    left.addWidget(new QLabel("Range, the same for all cells"));
     range_ = new QLineEdit;
     range_->setPlaceholderText("from what is seen; or -120:120");
     range_->setAccessibleName("Range of the colours");
     range_->setClearButtonEnabled(true);
-    left->addWidget(range_);
+    left.addWidget(range_);
     range_shown_ = new QLabel;
     range_shown_->setWordWrap(true);
     keep_range_ = new QToolButton;
@@ -71,7 +89,10 @@ void FieldsPanel::build_controls(QWidget& side) {
     auto* now = new QHBoxLayout;
     now->addWidget(range_shown_, 1);
     now->addWidget(keep_range_);
-    left->addLayout(now);
+    left.addLayout(now);
+}
+
+void FieldsPanel::add_switches(QBoxLayout& left) {
     whole_range_ = new QCheckBox("&whole range of colours");
     whole_range_->setToolTip(
         "Off: colours span the 1st to the 99th hundredth of the values, so that single points at an\n"
@@ -83,14 +104,11 @@ void FieldsPanel::build_controls(QWidget& side) {
         "The cells after the first show their case less the first, seen from below, as `underbody views difference` "
         "draws it");
     for (auto* box : {whole_range_, edges_, mirror_, difference_}) {
-        left->addWidget(box);
+        left.addWidget(box);
     }
-    left->addWidget(new QLabel("Zones"));
-    zones_ = new QListWidget;
-    zones_->setAccessibleName("Zones");
-    zones_->setToolTip("Ticked zones are drawn, and set the range of the colours");
-    zones_->setMinimumHeight(60);
-    left->addWidget(zones_, 1);
+}
+
+void FieldsPanel::add_cameras(QBoxLayout& left) {
     auto* views = new QGridLayout;
     const std::vector<std::tuple<QString, std::string, QString>> buttons = {{"Underbody", "bottom", "U"},
                                                                             {"Top", "top", "T"},
@@ -115,17 +133,20 @@ void FieldsPanel::build_controls(QWidget& side) {
         shortcut->setContext(Qt::WidgetWithChildrenShortcut);
         connect(shortcut, &QShortcut::activated, this, act);
     }
-    left->addLayout(views);
+    left.addLayout(views);
+}
+
+void FieldsPanel::add_body(QBoxLayout& left) {
     body_mode_ = new QPushButton("Choose the &body in 3D");
     body_mode_->setCheckable(true);
     body_mode_->setToolTip(
         "All zones are shown, those of the body in orange: a click on one makes it part of the body or takes it out.\n"
         "The right button on a zone, or on its name above, offers the same at any time.");
-    left->addWidget(body_mode_);
+    left.addWidget(body_mode_);
     connect(body_mode_, &QPushButton::toggled, this, [this] { recolour(); });
     half_offer_ = new QPushButton;
     half_offer_->hide();
-    left->addWidget(half_offer_);
+    left.addWidget(half_offer_);
     connect(half_offer_, &QPushButton::clicked, this, &FieldsPanel::take_half);
     zones_->setContextMenuPolicy(Qt::CustomContextMenu);
     connect(zones_, &QListWidget::customContextMenuRequested, this, [this](const QPoint& at) {
@@ -135,8 +156,11 @@ void FieldsPanel::build_controls(QWidget& side) {
     });
     units_ = new QPushButton("Units, &half model …");
     units_->setToolTip("What a file from outside the study does not say: units, half or whole, zones of the body");
-    left->addWidget(units_);
+    left.addWidget(units_);
     connect(units_, &QPushButton::clicked, this, &FieldsPanel::ask_units);
+}
+
+void FieldsPanel::follow_controls() {
     connect(view_, QOverload<int>::of(&QComboBox::activated), this, [this] {
         desk_.act({"fields", "view=" + view_->currentData().toString().toStdString()});
     });

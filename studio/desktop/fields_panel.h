@@ -98,6 +98,12 @@ private:
     };
     void build();
     void build_controls(QWidget& side);
+    void add_view_choice(QBoxLayout& left);
+    void add_colours(QBoxLayout& left);
+    void add_switches(QBoxLayout& left);
+    void add_cameras(QBoxLayout& left);
+    void add_body(QBoxLayout& left);
+    void follow_controls();
     [[nodiscard]] std::vector<Source> wanted() const;
     [[nodiscard]] Source source_of(const cases::Case& one) const;
     [[nodiscard]] Source source_of(const std::filesystem::path& file) const;
