@@ -139,11 +139,11 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     card_->setAccessibleName("Results now and before");
     card_->setHorizontalHeaderLabels({"result", "now", "before"});
     card_->verticalHeader()->hide();
-    card_->verticalHeader()->setDefaultSectionSize(21);
+    card_->verticalHeader()->setDefaultSectionSize(19);
     card_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     card_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
     card_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
-    card_->setMinimumHeight(250);
+    card_->setMinimumHeight(276);  // all of its rows
     side.addWidget(card_, 2);
     state_label_ = new QLabel;
     state_label_->setWordWrap(true);

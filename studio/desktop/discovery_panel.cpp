@@ -75,12 +75,12 @@ QImage on_dark(const QImage& picture, const QColor& ground) {
     QImage image = picture.convertToFormat(QImage::Format_RGB32);
     const double low = ground.value(), share = (255 - low) / 255;
     for (int y = 0; y < image.height(); ++y) {
-        auto* line = reinterpret_cast<QRgb*>(image.scanLine(y));
+        auto* row = reinterpret_cast<QRgb*>(image.scanLine(y));
         for (int x = 0; x < image.width(); ++x) {
-            const int r = qRed(line[x]), g = qGreen(line[x]), b = qBlue(line[x]);
+            const int r = qRed(row[x]), g = qGreen(row[x]), b = qBlue(row[x]);
             const int turned = 255 - std::max({r, g, b}) - std::min({r, g, b});
             const auto shade = [&](int value) { return static_cast<int>(low + share * (value + turned)); };
-            line[x] = qRgb(shade(r), shade(g), shade(b));
+            row[x] = qRgb(shade(r), shade(g), shade(b));
         }
     }
     return image;

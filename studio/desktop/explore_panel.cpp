@@ -116,6 +116,9 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
         new SideBySide(new ViewCell(*this, "points", "Points", scatter_), "Points", pictures_cell_, "Pictures", room);
     lower_->addWidget(table_cell_);
     lower_->addWidget(points_or_pictures_);
+    lower_->setSizes({500, 500});
+    lower_->setStretchFactor(0, 1);
+    lower_->setStretchFactor(1, 1);
     halves->addWidget(lower_);
     halves->setSizes({260, 340});
     connect(scatter_, &PlotView::hovered, this, &Panel::remark);

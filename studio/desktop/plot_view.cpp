@@ -79,8 +79,10 @@ void draw_dressed(const core::Figure& figure, QCustomPlot& plot, const QPalette&
 
 /// Curves and points as a spreadsheet takes them.
 QString numbers_of(const core::Figure& figure) {
-    QString text = "series\t" + QString::fromStdString(axis_title(figure.x.label, figure.x.unit)) + "\t" +
-                   QString::fromStdString(axis_title(figure.y.label, figure.y.unit)) + "\n";
+    const auto title = [](const core::FigureAxis& axis) {
+        return QString::fromStdString(axis_title(axis.label, axis.unit)).replace('_', ' ');
+    };
+    QString text = "series\t" + title(figure.x) + "\t" + title(figure.y) + "\n";
     const auto add = [&](const auto& series) {
         for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
             text += QString::fromStdString(series.name) + "\t" + QString::number(series.x[i], 'g', 9) + "\t" +

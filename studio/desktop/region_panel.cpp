@@ -390,7 +390,7 @@ void RegionPanel::fill_kinds() {
     const auto shown = kinds();
     const bool swept = std::find(shown.begin(), shown.end(), "sweep") != shown.end();
     const bool sensed = std::find(shown.begin(), shown.end(), "estimator") != shown.end();
-    sweep_text_->setEnabled(swept);
+    sweep_text_->setVisible(swept);
     gap_noise_->show_number(view.gap_noise);
     velocity_noise_->show_number(view.velocity_noise);
     drag_error_->show_number(view.drag_error);
@@ -399,7 +399,7 @@ void RegionPanel::fill_kinds() {
         label->setVisible(sensed);
     }
     if (QWidget* label = form_->labelForField(sweep_text_)) {
-        label->setEnabled(swept);
+        label->setVisible(swept);
     }
 }
 

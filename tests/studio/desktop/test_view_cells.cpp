@@ -198,7 +198,7 @@ TEST_F(ViewCells, ViewsOfATableStandBesideEachOther) {
     core::write_file(folder / "study.toml",
                      core::read_file(folder / "study.toml") +
                          "\n[[table]]\nname = \"pitched\"\nquantity = \"lift_force\"\naxes = [\"gap\", \"pitch\"]\n"
-                         "where = { variant = \"ellipse\", gap = \"3 mm:10 mm\" }\n");
+                         "where = { variant = \"ellipse\", speed = \"0.5 m/s\" }\n");
     const auto run = test::run_underbody({"study", "run", folder.string(), "--no-pictures"});
     ASSERT_EQ(run.exit_code, 0) << run.errors;
     open(folder);
