@@ -4,7 +4,6 @@
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
-#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <cmath>
 #include <string>
@@ -22,7 +21,6 @@ struct Ode::Impl {
     N_Vector tolerance = nullptr;
     SUNMatrix matrix = nullptr;
     SUNLinearSolver solver = nullptr;
-    SUNNonlinearSolver fixed_point = nullptr;
     void* memory = nullptr;
     std::vector<int> found;
     double last = 0;  ///< time of `y`
@@ -33,9 +31,6 @@ struct Ode::Impl {
         }
         if (solver) {
             SUNLinSolFree(solver);
-        }
-        if (fixed_point) {
-            SUNNonlinSolFree(fixed_point);
         }
         if (matrix) {
             SUNMatDestroy(matrix);
@@ -116,7 +111,7 @@ Ode::Ode(OdeProblem problem, OdeOptions options) : impl_(std::make_unique<Impl>(
             i < m.options.absolute.size() ? m.options.absolute[i] : m.options.relative * 1e-3;
         N_VGetArrayPointer(m.y)[i] = 0;
     }
-    m.memory = CVodeCreate(m.options.stiff ? CV_BDF : CV_ADAMS, m.context);
+    m.memory = CVodeCreate(CV_BDF, m.context);
     if (!m.memory || CVodeInit(m.memory, &Impl::rate, 0.0, m.y) != CV_SUCCESS) {
         throw core::SystemError("integration", "the integrator could not be set up");
     }
@@ -124,14 +119,9 @@ Ode::Ode(OdeProblem problem, OdeOptions options) : impl_(std::make_unique<Impl>(
     CVodeSetUserData(m.memory, &m);
     CVodeSVtolerances(m.memory, m.options.relative, m.tolerance);
     CVodeSetMaxNumSteps(m.memory, m.options.max_steps);
-    if (m.options.stiff) {
-        m.matrix = SUNDenseMatrix(size, size, m.context);
-        m.solver = SUNLinSol_Dense(m.y, m.matrix, m.context);
-        CVodeSetLinearSolver(m.memory, m.solver, m.matrix);
-    } else {
-        m.fixed_point = SUNNonlinSol_FixedPoint(m.y, 0, m.context);
-        CVodeSetNonlinearSolver(m.memory, m.fixed_point);
-    }
+    m.matrix = SUNDenseMatrix(size, size, m.context);
+    m.solver = SUNLinSol_Dense(m.y, m.matrix, m.context);
+    CVodeSetLinearSolver(m.memory, m.solver, m.matrix);
     if (m.options.max_step > 0) {
         CVodeSetMaxStep(m.memory, m.options.max_step);
     }

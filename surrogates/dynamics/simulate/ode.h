@@ -19,7 +19,6 @@ struct OdeOptions {
     double relative = 1e-9;
     std::vector<double> absolute;  ///< one per state
     double max_step = 0;           ///< 0: as large as the error allows
-    bool stiff = true;             ///< BDF with Newton; else Adams with fixed-point iteration
     long max_steps = 2000000;
 };
 

@@ -154,7 +154,7 @@ Prepared prepared(const SeparatedPlant& plant, const ControlLaw& law, const Loop
         throw core::InputError("name", "the region of a loop that holds a gap has the axes gap and heave_velocity");
     }
     const double length = gaps.upper - gaps.lower;
-    const double tolerance = options.hold_tolerance > 0 ? options.hold_tolerance : 0.02 * length;
+    const double tolerance = 0.02 * length;  // so near to the reference counts as held
     return {grid, swapped, {plant, law, estimator, loop, gaps.upper + length, tolerance}};
 }
 
