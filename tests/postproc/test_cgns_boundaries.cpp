@@ -12,20 +12,12 @@ namespace underbody {
 using postproc::read_field;
 using postproc::ZoneKind;
 using test::CgnsWriter;
+using test::told;
 using ::testing::HasSubstr;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// All that reading has to say of a file, in one text.
-std::string told(const postproc::Field& field) {
-    std::string text;
-    for (const auto& problem : field.problems) {
-        text += problem.message + "\n";
-    }
-    return text;
-}
 
 double area(const postproc::Field& field, const std::string& zone) {
     const auto* found = field.find(zone);

@@ -13,20 +13,13 @@ namespace underbody {
 using postproc::Location;
 using postproc::read_field;
 using test::CgnsWriter;
+using test::told;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string told(const postproc::Field& field) {
-    std::string text;
-    for (const auto& problem : field.problems) {
-        text += problem.message + "\n";
-    }
-    return text;
-}
 
 /// Data of a condition, one value or one each of what it names, or of a range of its own.
 void write_data(const CgnsWriter& file, int condition, CGNS_ENUMT(BCDataType_t) kind, const std::string& variable,

@@ -13,6 +13,7 @@ namespace underbody {
 
 using postproc::read_field;
 using test::CgnsWriter;
+using test::told;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -68,14 +69,6 @@ std::string refusal_at(const fs::path& path, double time) {
     postproc::ReadOptions options;
     options.time = time;
     return test::refusal(path, options);
-}
-
-std::string told(const postproc::Field& field) {
-    std::string text;
-    for (const auto& problem : field.problems) {
-        text += problem.message + "\n";
-    }
-    return text;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace underbody {
 
 using postproc::read_field;
 using test::CgnsWriter;
+using test::told;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -25,14 +26,6 @@ void state_units(CGNS_ENUMT(LengthUnits_t) length, CGNS_ENUMT(TemperatureUnits_t
 
 double value_of(const postproc::Field& field, const char* array) {
     return field.find("water")->volume->GetPointData()->GetArray(array)->GetTuple1(0);
-}
-
-std::string told(const postproc::Field& field) {
-    std::string text;
-    for (const auto& problem : field.problems) {
-        text += problem.message + "\n";
-    }
-    return text;
 }
 
 /// A cube with one variable of 20 everywhere; `more` writes what the file says of it.

@@ -204,6 +204,18 @@ std::int64_t EnsightInput::part_number(bool first) {
     return number;
 }
 
+Buffer<std::uint32_t> EnsightInput::words(std::uint64_t count) {
+    Buffer<std::uint32_t> all(count);
+    if (count == 0 && coding_ == EnsightCoding::c_binary) {
+        return all;
+    }
+    read_record(all.data(), count * 4);
+    for (std::size_t i = 0; swapped_ && i < count; ++i) {
+        all[i] = turned(all[i]);
+    }
+    return all;
+}
+
 void EnsightInput::integers(std::vector<std::int64_t>& out, std::uint64_t count) {
     check_room(count, "numbers");
     out.resize(count);
@@ -213,13 +225,9 @@ void EnsightInput::integers(std::vector<std::int64_t>& out, std::uint64_t count)
         }
         return;
     }
-    if (count == 0 && coding_ == EnsightCoding::c_binary) {
-        return;
-    }
-    Buffer<std::uint32_t> raw(count);
-    read_record(raw.data(), count * 4);
+    const Buffer<std::uint32_t> raw = words(count);
     for (std::size_t i = 0; i < count; ++i) {
-        out[i] = static_cast<std::int32_t>(swapped_ ? turned(raw[i]) : raw[i]);
+        out[i] = static_cast<std::int32_t>(raw[i]);
     }
 }
 
@@ -236,15 +244,10 @@ void EnsightInput::reals(double* out, std::uint64_t count) {
         }
         return;
     }
-    if (count == 0 && coding_ == EnsightCoding::c_binary) {
-        return;
-    }
-    Buffer<std::uint32_t> raw(count);
-    read_record(raw.data(), count * 4);
+    const Buffer<std::uint32_t> raw = words(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t bits = swapped_ ? turned(raw[i]) : raw[i];
         float value = 0;
-        std::memcpy(&value, &bits, 4);
+        std::memcpy(&value, &raw[i], 4);
         out[i] = value;
     }
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +46,8 @@ public:
 private:
     std::string rest_of_line();
     void read_record(void* out, std::uint64_t bytes);
+    /// A record of 4 bytes each, in the byte order of this machine; C binary has none for nothing.
+    Buffer<std::uint32_t> words(std::uint64_t count);
     std::string token();
 
     ByteStream in_;

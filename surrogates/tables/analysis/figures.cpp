@@ -125,6 +125,18 @@ void add_curve(core::Figure& figure, const ForceTable& table, std::size_t axis, 
     }
 }
 
+void add_curve_with_points(core::Figure& figure, const ForceTable& table, std::size_t axis,
+                           const std::vector<double>& at, const FigureOptions& options, const std::string& name,
+                           core::Colour colour) {
+    add_curve(figure, table, axis, at, options, name, colour, false);
+    auto points = points_on(table, axis, at);
+    points.name.clear();
+    points.colour = colour;
+    if (!points.x.empty()) {
+        figure.points.push_back(std::move(points));
+    }
+}
+
 /// Values of the axes that are held: of all but one or two.
 std::string described(const ForceTable& table, std::size_t axis, const std::vector<double>& at,
                       std::size_t other = max_axes) {
@@ -189,8 +201,6 @@ std::string caption_of(const ForceTable& table) {
 
 }  // namespace
 
-bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
-
 std::string unit_per(const std::string& unit, const std::string& of) {
     return unit + "/" + (of.find_first_of("/ ") == std::string::npos ? of : "(" + of + ")");
 }
@@ -237,13 +247,7 @@ core::Figure family_figure(const ForceTable& table, const std::string& axis_name
         at[other] = values[i];
         const std::string name =
             family + " " + core::format_number(shown(values[i]), 4) + " " + shown_unit(table, family);
-        add_curve(figure, table, axis, at, options, name, core::palette(colour), false);
-        auto points = points_on(table, axis, at);
-        points.name.clear();
-        points.colour = core::palette(colour++);
-        if (!points.x.empty()) {
-            figure.points.push_back(std::move(points));
-        }
+        add_curve_with_points(figure, table, axis, at, options, name, core::palette(colour++));
     }
     return figure;
 }
@@ -395,13 +399,7 @@ core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTab
                                                  : options.title;
             figure.caption = "Bands: two standard deviations.";
         }
-        add_curve(figure, table, axis, at, options, name, core::palette(colour), false);
-        auto points = points_on(table, axis, at);
-        points.name.clear();
-        points.colour = core::palette(colour++);
-        if (!points.x.empty()) {
-            figure.points.push_back(std::move(points));
-        }
+        add_curve_with_points(figure, table, axis, at, options, name, core::palette(colour++));
     }
     keep_curves_in_view(figure);
     return figure;

@@ -36,10 +36,6 @@ core::Figure comparison_figure(const std::vector<std::pair<std::string, ForceTab
 /// The one to show first: a map for two and more axes, a curve for one.
 core::Figure figure(const ForceTable& table, const FigureOptions& options = {});
 
-/// Positive numbers that span a factor of twenty and more are drawn on a logarithmic axis: on a linear one the small
-/// ones, small gaps above all, would share one column of pixels.
-bool spans_decades(double lower, double upper);
-
 /// Unit of a slope: "N/m", "N/(m/s)".
 std::string unit_per(const std::string& unit, const std::string& of);
 

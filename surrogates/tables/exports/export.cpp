@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/units.h"
-#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/exports/export_grid.h"
 #include "surrogates/tables/fit/table_json.h"
 #include "surrogates/tables/points/table_files.h"

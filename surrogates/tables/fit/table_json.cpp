@@ -17,6 +17,8 @@ std::string common_policy(const std::vector<TableAxis>& axes) {
 }
 }  // namespace
 
+bool spans_decades(double lower, double upper) { return lower > 0 && upper >= 20 * lower; }
+
 std::string shown_unit(const ForceTable& table, const std::string& quantity) {
     if (const core::Column* column = table.points().find(quantity); column != nullptr && !column->is_text()) {
         return column->written_unit.empty() ? column->unit : column->written_unit;
