@@ -1,6 +1,6 @@
-"""pvpython paraview_turn.py FILE.stl: how long ParaView takes to open a surface and how fast it turns, beside bench_desktop.
+"""pvpython paraview_turn.py FILE.stl [WIDTHxHEIGHT]: how long ParaView takes to open a surface and how fast it turns, beside bench_desktop.
 
-Both on one display of 1280 x 800 with the same renderer (LIBGL_ALWAYS_SOFTWARE=1). "turning" is ParaView's own picture while
+Both on one display with the same renderer and a view of the same size (LIBGL_ALWAYS_SOFTWARE=1). "turning" is ParaView's own picture while
 a mouse button is held (its stand-in, where its settings have one), "whole" the picture at rest.
 """
 import sys
@@ -12,7 +12,8 @@ from paraview import simple
 def main():
     begin = time.perf_counter()
     surface = simple.STLReader(FileNames=[sys.argv[1]])
-    view = simple.CreateRenderView(ViewSize=[1280, 800])
+    size = [int(side) for side in sys.argv[2].split("x")] if len(sys.argv) > 2 else [1280, 800]
+    view = simple.CreateRenderView(ViewSize=size)
     simple.Show(surface, view)
     simple.ResetCamera(view)
     simple.Render(view)
