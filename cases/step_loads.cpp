@@ -36,7 +36,7 @@ Key loads_key(const Study& study, const Case& entry) {
     if (const auto own = entry.conditions.number("density")) {
         key.add("density", *own);
     }
-    for (const char* declared : {"gap", "pitch"}) {  // held against what the file shows
+    for (const char* declared : {"gap", "pitch", "jet_flow", "jet_voltage"}) {  // held against what the file shows
         if (const auto own = entry.conditions.number(declared)) {
             key.add(declared, *own);
         }
@@ -60,14 +60,17 @@ public:
     explicit LoadsKeys(const Study& study) {
         using Units = std::vector<std::pair<std::string, std::string>>;
         using Number = std::optional<double>;
-        std::map<std::tuple<Number, Number, Number, Number, std::vector<std::string>, std::string, Units>, std::size_t>
+        std::map<std::tuple<Number, std::vector<Number>, std::vector<std::string>, std::string, Units>, std::size_t>
             known;
         for (const auto& entry : study.cases) {
             const Conditions& own = entry.conditions;
-            const auto [at, fresh] =
-                known.try_emplace({study.speed_of(entry), own.number("density"), own.number("gap"), own.number("pitch"),
-                                   entry.zones, entry.length_unit, entry.units},
-                                  keys_.size());
+            const auto [at, fresh] = known.try_emplace({study.speed_of(entry),
+                                                        {own.number("density"), own.number("gap"), own.number("pitch"),
+                                                         own.number("jet_flow"), own.number("jet_voltage")},
+                                                        entry.zones,
+                                                        entry.length_unit,
+                                                        entry.units},
+                                                       keys_.size());
             if (fresh) {
                 keys_.push_back(loads_key(study, entry));
             }
@@ -96,14 +99,16 @@ std::string one_line(std::string text) {
 }
 
 /// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and
-/// for each warning ("!", file, message), and one for the verdict on the solution ("?", verdict, why), parted by tabs.
+/// for each warning ("!", file, message), one for the verdict on the solution ("?", verdict, why), and one for the tilt
+/// of the base ("^", rad), parted by tabs.
 std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postproc::Settled& settled,
-                  const core::Problems& problems) {
+                  double base_pitch, const core::Problems& problems) {
     std::string text;
     for (const auto& column : columns) {
         text += column.name + "\t" + column.unit + "\t" + core::format_number(column.value) + "\n";
     }
     text += "?\t" + to_string(settled.verdict) + "\t" + one_line(settled.why) + "\n";
+    text += "^\trad\t" + core::format_number(base_pitch) + "\n";
     for (const auto& problem : problems) {
         if (problem.severity != core::Problem::Severity::note) {
             text += "!\t" + one_line(problem.place.file) + "\t" + one_line(problem.message) + "\n";
@@ -137,6 +142,8 @@ void take_brief(std::string_view text, CaseLoads& loads, bool list) {
         } else if (name == "?") {
             loads.settled = std::string(unit);
             loads.settled_why = std::string(rest);
+        } else if (name == "^") {
+            loads.base_pitch = core::parse_number(rest).value_or(NAN);
         } else if (!list || is_listed(name)) {
             loads.values.push_back(
                 {std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
@@ -144,17 +151,23 @@ void take_brief(std::string_view text, CaseLoads& loads, bool list) {
     }
 }
 
+/// What a study says of a case that its file is to bear out.
+postproc::Declared declared(const Case& entry) {
+    const auto number = [&](const char* name) { return entry.conditions.number(name); };
+    postproc::Declared said{number("gap").value_or(NAN), number("pitch").value_or(NAN)};
+    said.zones_named = !entry.zones.empty();
+    said.driven = number("jet_flow").value_or(0) != 0 || number("jet_voltage").value_or(0) != 0;
+    return said;
+}
+
 Value compute_loads(Engine& engine, const Case& entry) {
     postproc::ReadOptions reading = read_options(entry);
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
     postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
-    if (const auto gap = entry.conditions.number("gap")) {
-        const auto fault = postproc::gap_fault(field, result, *gap, entry.conditions.number("pitch").value_or(0));
-        if (fault) {
-            result.problems.push_back(*fault);
-        }
-    }
+    const postproc::Declared said = declared(entry);
+    const core::Problems faults = postproc::declared_faults(field, result, said);
+    result.problems.insert(result.problems.end(), faults.begin(), faults.end());
     core::Problems problems = findings(engine, field, result);
     core::Problems notes;
     const postproc::Settled settled =
@@ -189,10 +202,12 @@ Value compute_loads(Engine& engine, const Case& entry) {
                                     {"lift_viscous", result.named_viscous.lift_force},
                                     {"drag_pressure", result.named_pressure.drag_force},
                                     {"drag_viscous", result.named_viscous.drag_force}};
-    return {document.dump(-1, ' ', false, json::error_handler_t::replace), brief(columns, settled, problems)};
+    return {document.dump(-1, ' ', false, json::error_handler_t::replace),
+            brief(columns, settled, postproc::base_tilt(result, said.base), problems)};
 }
 
-/// Copies of one file under several names, a warning with the last of each; a file in another unit than the rest.
+/// Copies of one file under several names, a warning with the last of each; a file in another unit than the rest;
+/// pitches that do not agree.
 void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
     std::vector<postproc::ConditionedLoads> cases;
     std::vector<std::size_t> place;
@@ -204,7 +219,8 @@ void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
         postproc::ConditionedLoads one{all[i].name,
                                        conditions.texts,
                                        {all[i].value("lift_force"), all[i].value("drag_force"),
-                                        all[i].value("side_force"), all[i].value("lift_pressure")}};
+                                        all[i].value("side_force"), all[i].value("lift_pressure")},
+                                       all[i].base_pitch};
         for (const auto& [name, value] : conditions.numbers) {
             if (!postproc::is_result(name)) {
                 one.conditions.emplace_back(name, core::format_number(value));

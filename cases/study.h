@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -119,6 +120,7 @@ struct CaseLoads {
     std::vector<LoadValue> values;    ///< empty unless computed or unchanged
     std::string settled = "unknown";  ///< "settled", "not settled", "unknown": postproc::Settled
     std::string settled_why;
+    double base_pitch = NAN;  ///< rad, how far the base is pitched in the file
     core::Problems warnings;  ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
     std::int64_t id = 0;      ///< in the store
     std::string origin;       ///< digest over all that it was made from

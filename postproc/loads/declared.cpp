@@ -291,8 +291,8 @@ std::vector<std::pair<Problem, std::size_t>> other_sizes(const std::vector<Condi
 
 std::vector<std::pair<Problem, std::size_t>> odd_loads(const std::vector<ConditionedLoads>& cases) {
     auto all = same_loads(cases);
-    for (auto& one : other_sizes(cases)) {
-        all.push_back(std::move(one));
+    for (const auto& more : {other_sizes(cases), other_pitches(cases)}) {
+        all.insert(all.end(), more.begin(), more.end());
     }
     return all;
 }

@@ -1,6 +1,8 @@
-// What was declared of a case, held against what its file shows: the gap, the lengths of the body, its conditions.
+// What was declared of a case, held against what its file shows: gap, pitch, speed, the point of the moments, the
+// lengths of the body, its conditions.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,11 +32,40 @@ core::Problems size_faults(const LoadsReferences& given, const Vector& body, dou
 /// base that faces up on an open surface, whose outside nothing tells.
 std::optional<core::Problem> base_fault(const LoadsResult& loads, const std::string& base);
 
+/// rad, nose up: how far the flat base of a body is pitched against the axes of its file, from the summed area of its
+/// zones (`base`: their pattern), which only their rim decides. NaN where no such zone is flat, and in a plane case.
+double base_tilt(const LoadsResult& loads, const std::string& base);
+
+/// A warning where the pitch (rad) declared for a file cannot be the body's whatever tilt its base has of its own (15
+/// deg at most): degrees read as radians, or the other way round, or one beyond 90 deg.
+std::optional<core::Problem> pitch_fault(const LoadsResult& loads, const std::string& base, double pitch);
+
+/// A warning for a point of the moments that was given and lies more than `limit` times the size of the body away from
+/// it: one in mm that was read in m.
+std::optional<core::Problem> reference_fault(const Field& field, const LoadsResult& loads, double limit);
+
+/// A warning where the highest pressure on a closed body, counted from the middle one, is not that of a flow of the
+/// speed and density of its coefficients, which comes to rest at 1/2 rho U^2: below a fifth, above six times (on zones
+/// that fit `base`, where there are no others, thirty times: a film over the ground). Whatever the pressure is relative
+/// to, with or without the weight of the water.
+std::optional<core::Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base);
+
+/// What was said of a case that its file is to bear out.
+struct Declared {
+    double gap = NAN, pitch = NAN;  ///< m, rad; NaN: not said
+    std::string base = "*base*";    ///< pattern of the zones of the flat base
+    bool zones_named = false;       ///< the zones may be a part of the body
+    bool driven = false;            ///< by jets: pressures do not follow from the speed
+};
+/// All of the above of one case.
+core::Problems declared_faults(const Field& field, const LoadsResult& loads, const Declared& said);
+
 /// Of cases, what tells them apart and what came out.
 struct ConditionedLoads {
     std::string name;
     std::vector<std::pair<std::string, std::string>> conditions;  ///< name and value, as shown
     std::vector<double> loads;                                    ///< lift, drag and side force first
+    double base_pitch = NAN;                                      ///< rad, in the file: base_tilt
 };
 /// A warning for each group of cases whose loads are the same to the last digit although their conditions, other than
 /// the time, differ: copies of one file. Beside it the last of the group, by its place in `cases`. Of a group the first
@@ -46,7 +77,12 @@ std::vector<std::pair<core::Problem, std::size_t>> same_loads(const std::vector<
 /// pressure in another unit, or over density.
 std::vector<std::pair<core::Problem, std::size_t>> other_sizes(const std::vector<ConditionedLoads>& cases);
 
-/// Both.
+/// A warning for each case whose pitch and whose base in the file do not differ as they do in most cases of the same
+/// body (words and numbers that are no quantities tell bodies apart): files that were exchanged, a sign that was
+/// turned. One for all where the base lies alike in every file whatever pitch was declared.
+std::vector<std::pair<core::Problem, std::size_t>> other_pitches(const std::vector<ConditionedLoads>& cases);
+
+/// All of these.
 std::vector<std::pair<core::Problem, std::size_t>> odd_loads(const std::vector<ConditionedLoads>& cases);
 
 }  // namespace underbody::postproc

@@ -474,11 +474,12 @@ postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const Con
                                           " kg/m^3, fresh water at 20 degC (--density)",
                                       {}});
     }
-    if (const auto gap = condition_of(file, "gap")) {
-        if (const auto fault = postproc::gap_fault(field, one.loads, *gap, condition_of(file, "pitch").value_or(0))) {
-            one.loads.problems.push_back(*fault);
-        }
-    }
+    const auto driven = [&](const char* jet) { return condition_of(file, jet).value_or(0) != 0; };
+    const core::Problems faults =
+        postproc::declared_faults(field, one.loads,
+                                  {condition_of(file, "gap").value_or(NAN), condition_of(file, "pitch").value_or(NAN),
+                                   options.base, !options.zones.empty(), driven("jet_flow") || driven("jet_voltage")});
+    one.loads.problems.insert(one.loads.problems.end(), faults.begin(), faults.end());
     std::erase_if(one.numbers, [](const auto& entry) {
         return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z" ||
                entry.first == "reference_length";
@@ -498,12 +499,15 @@ void show_studies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
     }
 }
 
-/// Copies of one file under several names.
-void show_copies(Shell& shell, const std::vector<postproc::LoadsCase>& cases) {
+/// Copies of one file under several names, one in another unit, pitches that do not agree.
+void show_odd_ones(Shell& shell, const std::vector<postproc::LoadsCase>& cases, const std::string& base) {
     std::vector<postproc::ConditionedLoads> all;
     for (const auto& one : cases) {
         const postproc::NamedLoads& loads = one.loads.named;
-        all.push_back({one.file, one.texts, {loads.lift_force, loads.drag_force, loads.side_force, one.loads.area}});
+        all.push_back({one.file,
+                       one.texts,
+                       {loads.lift_force, loads.drag_force, loads.side_force, one.loads.area},
+                       postproc::base_tilt(one.loads, base)});
         for (const auto& [name, value] : one.numbers) {
             if (!postproc::is_result(name)) {
                 all.back().conditions.emplace_back(name, core::format_number(value));
@@ -592,7 +596,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
     const int verdict =
         given.check.empty() ? static_cast<int>(done) : check(shell, cases, option_value("--check", given.check, "1"));
-    show_copies(shell, cases);
+    show_odd_ones(shell, cases, given.base);
     core::Problems notes;
     if (given.mean) {
         cases = postproc::means_in_time(cases, notes);

@@ -1,6 +1,8 @@
 // What was declared of a case against what its file shows: gap, lengths, density, copies.
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "postproc/loads/declared.h"
 #include "postproc/loads/loads.h"
 #include "tests/postproc/made_zones.h"
@@ -87,6 +89,132 @@ TEST(DeclaredLengths, AreHeldAgainstTheBodyByTheLoads) {
     EXPECT_THAT(messages(loads(box(false, false), options)), HasSubstr("length of reference is 2000 m"));
     options.references = {998, 0.5, 2, 1, 0.5};
     EXPECT_THAT(messages(loads(box(false, false), options)), testing::Not(HasSubstr("of reference is")));
+}
+
+TEST(DeclaredPitch, OfOneCaseIsHeldAgainstTheTiltOfItsBase) {
+    constexpr double deg = std::numbers::pi / 180;
+    const auto pitched = [](double tilt) {
+        LoadsResult loads = body_at(0.005);
+        loads.forward = {1, 0, 0};
+        loads.zones.resize(1);
+        loads.zones[0].name = "base";
+        loads.zones[0].area = 0.012;
+        loads.zones[0].area_vector = {0.01 * std::sin(tilt), 0, -0.01 * std::cos(tilt)};
+        return loads;
+    };
+    const auto told = [&](double pitch, double tilt) {
+        const auto fault = pitch_fault(pitched(tilt), "*base*", pitch);
+        return fault ? fault->message : "";
+    };
+    EXPECT_NEAR(base_tilt(pitched(-2 * deg), "*base*"), -2 * deg, 1e-12);
+    EXPECT_TRUE(std::isnan(base_tilt(pitched(0), "keel")));
+    EXPECT_EQ(told(2 * deg, 2 * deg), "");
+    EXPECT_EQ(told(0, 0), "");
+    EXPECT_EQ(told(0, 12 * deg), "") << "shapes may have such a base";
+    EXPECT_EQ(told(NAN, 2 * deg), "");
+    EXPECT_THAT(told(2, 2 * deg), AllOf(HasSubstr("declared as 114.59 deg"), HasSubstr("pitched by 2 deg"),
+                                        HasSubstr("is it in deg, and was read in rad?")));
+    EXPECT_THAT(told(-1, -1 * deg), HasSubstr("is it in deg, and was read in rad?"));
+    EXPECT_THAT(told(2 * deg * deg, 2 * deg), HasSubstr("is it in rad, and was read in deg?"));
+    EXPECT_THAT(told(30 * deg, 0), HasSubstr("the file the one that was meant"));
+    LoadsResult without = body_at(0.005);  // no base is known
+    ASSERT_TRUE(pitch_fault(without, "*base*", 2));
+    EXPECT_FALSE(pitch_fault(without, "*base*", 0.5));
+}
+
+TEST(DeclaredPitch, OfCasesOfOneBodyHasToAgree) {
+    constexpr double deg = std::numbers::pi / 180;
+    std::vector<ConditionedLoads> cases;
+    const auto add = [&](const std::string& name, double pitch, double tilt, const std::string& body = "a") {
+        cases.push_back({name,
+                         {{"variant", body}, {"gap", "0.005"}, {"pitch", std::to_string(pitch * deg)}},
+                         {0.1 + 0.01 * static_cast<double>(cases.size())},
+                         tilt * deg});
+    };
+    const auto told = [&] {
+        std::string all;
+        for (const auto& [problem, at] : other_pitches(cases)) {
+            all += problem.message + "\n";
+        }
+        return all;
+    };
+    for (const double pitch : {-2, -1, 0, 1, 2}) {
+        add("a" + std::to_string(static_cast<int>(pitch)), pitch, pitch);
+        add("b" + std::to_string(static_cast<int>(pitch)), pitch, pitch + 3, "b");  // its base is pitched by 3 deg
+    }
+    add("odd", 0, NAN);
+    EXPECT_EQ(told(), "");
+    std::swap(cases[0].base_pitch, cases[8].base_pitch);  // a at -2 and 2
+    EXPECT_EQ(other_pitches(cases).size(), 2U);
+    EXPECT_THAT(told(), AllOf(HasSubstr("of 'a-2' is declared as -2 deg, but in the file the base is pitched by 2 deg"),
+                              HasSubstr("is its sign turned"), HasSubstr("'a2'")));
+    std::swap(cases[0].base_pitch, cases[8].base_pitch);
+    add("level", 2, 0);
+    EXPECT_THAT(told(), AllOf(HasSubstr("'level' is declared as 2 deg, but in the file the base is pitched by 0 deg"),
+                              HasSubstr("the one that was meant")));
+    cases.pop_back();
+    add("of b", 1, 1, "b");
+    EXPECT_THAT(told(), HasSubstr("pitched by -2 deg against the body, as other cases have it"));
+    cases.clear();
+    add("one", 2, -2);  // its base may be so
+    EXPECT_EQ(told(), "");
+    add("two", -2, 2);
+    EXPECT_EQ(other_pitches(cases).size(), 2U);
+    cases.clear();
+    for (const double pitch : {-2, 0, 2}) {
+        add("turned flow", pitch, 0);
+    }
+    ASSERT_EQ(other_pitches(cases).size(), 1U);
+    EXPECT_THAT(told(), AllOf(HasSubstr("3 cases of one body are declared with pitches from -2 to 2 deg"),
+                              HasSubstr("If the flow was turned")));
+}
+
+/// An ellipsoid in a stream, with the pressure of a round body: at rest at its nose, suction round its middle.
+LoadsResult in_a_stream(Field& field, double pascal, double speed, bool heavy = false) {
+    const Vector axes{0.1, 0.076, 0.0725};
+    field = {};
+    field.zones.push_back(ellipsoid(40, axes, [&](const Vector& p) {
+        return pascal * (p[0] > 0 ? 1 - 1.9 * (1 - p[0] * p[0] / 0.01) : -0.4) - (heavy ? 998 * 9.81 * p[2] : 0);
+    }));
+    LoadsOptions options;
+    options.references.speed = speed;
+    options.references.density = 998;
+    return loads(field, options);
+}
+
+TEST(DeclaredSpeed, IsHeldAgainstTheHighestPressure) {
+    const auto told = [](double pascal, double speed, bool heavy = false) {
+        Field field;
+        const auto fault = flow_fault(field, in_a_stream(field, pascal, speed, heavy), "*base*");
+        return fault ? fault->message : "";
+    };
+    constexpr double stagnation = 124.75;  // Pa, at 0.5 m/s
+    EXPECT_EQ(told(stagnation, 0.5), "");
+    EXPECT_EQ(told(stagnation, 0.5, true), "") << "with the weight of the water";
+    EXPECT_EQ(told(stagnation / 100, 0.05, true), "");
+    EXPECT_EQ(told(2 * stagnation, 0.5), "");
+    EXPECT_THAT(told(1000 * stagnation, 0.5),
+                AllOf(HasSubstr("1/2 rho U^2 = 124.8 Pa"), HasSubstr("is the pressure in Pa, and was read in kPa?")));
+    EXPECT_THAT(told(stagnation / 998, 0.5), HasSubstr("over density"));
+    EXPECT_THAT(told(stagnation, 5), HasSubstr("m/s comes to rest at"));
+    EXPECT_THAT(told(stagnation, 500), HasSubstr("is the speed in mm/s, and was read in m/s?"));
+}
+
+TEST(DeclaredReference, FarFromTheBodyIsToldWithTheLikelyUnit) {
+    Field field;
+    LoadsResult loads = in_a_stream(field, 100, 0.5);
+    loads.reference = {0, 0, 5};
+    EXPECT_FALSE(reference_fault(field, loads, 3)) << "nobody gave it";
+    loads.reference_from = "given";
+    const auto fault = reference_fault(field, loads, 3);
+    ASSERT_TRUE(fault);
+    EXPECT_THAT(fault->message, AllOf(HasSubstr("about (0, 0, 5) m, 25 lengths of the body away"),
+                                      HasSubstr("is it in mm, and was read in m?")));
+    EXPECT_FALSE(reference_fault(field, loads, 30));
+    loads.reference = {0.3, 0, 0};
+    EXPECT_FALSE(reference_fault(field, loads, 3));
+    loads.reference = {500, 0, 0};
+    EXPECT_THAT(reference_fault(field, loads, 3)->message, HasSubstr("is it the point that was meant"));
 }
 
 TEST(DeclaredUp, IsHeldAgainstTheSideThatTheBaseFaces) {
