@@ -10,6 +10,7 @@
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/model/repeated_runs.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
@@ -212,8 +213,39 @@ dynamics::GapRange tables_of(const dynamics::HeavePlant& plant) {
     return {plant.terms.table_lower, plant.terms.table_upper};
 }
 
+/// What gaps that lie outside the tables would be inside as: the question that the whole data set is asked.
+struct Misread {
+    const char* text = "";  ///< ": a thousandth would fit"
+    const char* hint = "";
+};
+
+double share_outside(const std::vector<double>& gaps, double factor, double lower, double upper) {
+    const auto out =
+        std::count_if(gaps.begin(), gaps.end(), [&](double x) { return factor * x < lower || factor * x > upper; });
+    return static_cast<double>(out) / static_cast<double>(gaps.size());
+}
+
+/// Only what fits as it stands, and far from fitting as it was read: a gap of 1.69 m beside tables to 1.6 m is none in
+/// mm, and one below the ground none in m.
+Misread misread(const std::vector<double>& gaps, double lower, double upper) {
+    constexpr double most = 0.1, far = 3;
+    const double middle = median(gaps);
+    const auto fits = [&](double factor) { return share_outside(gaps, factor, lower, upper) < most; };
+    if (middle > far * upper && fits(1e-3)) {
+        return {": a thousandth would fit", "is the column's unit mm, and was it read in m?"};
+    }
+    if (middle > 0 && far * middle < lower && fits(1e3)) {
+        return {": a thousandfold would fit", "is the column's unit m, and was it read in mm?"};
+    }
+    if (middle < 0 && fits(-1)) {
+        return {": with the other sign it would fit",
+                "gap counts upward from the ground; a depth or a z down is turned by sign = -1 in [log.channel.gap]"};
+    }
+    return {};
+}
+
 /// Why the declared model cannot run this run; empty where it can.
-std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, bool& unit) {
+std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& hint) {
     const double lower = plant.terms.table_lower;
     const double upper = plant.terms.table_upper;
     if (lower < -1e299 || upper > 1e299) {
@@ -221,31 +253,18 @@ std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlan
     }
     std::vector<double> finite;
     std::copy_if(gap.begin(), gap.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
-    const double middle = median(finite);
-    const auto inside = [&](double value) {
-        return value > lower - 0.05 * (upper - lower) && value < upper + 0.05 * (upper - lower);
-    };
+    const double middle = median(finite), margin = 0.05 * (upper - lower);
+    const double outside = share_outside(finite, 1, lower, upper);
+    const bool beyond = !(middle > lower - margin && middle < upper + margin);
+    if (!beyond && !(outside > 0.5)) {
+        return "";
+    }
+    const Misread likely = misread(finite, lower, upper);
+    hint = likely.hint;
     const std::string where = dynamics::range_text(tables_of(plant));
-    unit = false;
-    if (!inside(middle)) {
-        unit = inside(middle * 1e-3) || inside(middle * 1e3);
-        return "its gap, " + core::format_number(middle, 4) +
-               " m in the middle, lies outside the tables of the declared model " + where +
-               (unit ? ": a thousandth or a thousandfold would fit" : "");
-    }
-    const auto share_outside = [&](double factor) {
-        const auto out = std::count_if(finite.begin(), finite.end(),
-                                       [&](double x) { return factor * x < lower || factor * x > upper; });
-        return static_cast<double>(out) / static_cast<double>(finite.size());
-    };
-    const double outside = share_outside(1);
-    if (outside > 0.5) {
-        unit = share_outside(1e3) < 0.1 || share_outside(1e-3) < 0.1;
-        return "it spends " + core::format_number(100 * outside, 3) +
-               " % of its time outside the tables of the declared model " + where +
-               (unit ? ": a thousandth or a thousandfold would fit" : "");
-    }
-    return "";
+    return (beyond ? "its gap, " + core::format_number(middle, 4) + " m in the middle, lies"
+                   : "it spends " + core::format_number(100 * outside, 3) + " % of its time") +
+           " outside the tables of the declared model " + where + likely.text;
 }
 
 /// Leaves the longest stretch inside the tables: a body that came back from beyond them would be given an effect for
@@ -462,7 +481,7 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     result.step = step_for(data);
     std::vector<UsedRun> all_used;
     std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
-    bool unit = false;
+    std::string unit;
     std::size_t still = 0;
     std::size_t swapped = 0;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
@@ -594,14 +613,16 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     if (all_used.empty()) {
         const std::string first = result.problems.empty() ? "" : result.problems.front().message;
         throw core::InputError(
-            unit ? "unit" : "range", "no run can be used" + (first.empty() ? std::string() : ": " + first),
+            unit.empty() ? "range" : "unit", "no run can be used" + (first.empty() ? std::string() : ": " + first),
             core::Place{data.folder.string(), {}, {}, {}},
-            unit                        ? "is the column's unit mm, or m written as mm?"
+            !unit.empty()               ? unit
             : still == data.runs.size() ? "look at the gap sensor and its cable; a saturated one needs another range"
                                         : "give the model tables that cover the gaps that were measured, or runs "
                                           "within them; `underbody predict` "
                                           "shows the model beside each run");
     }
+    const core::Problems unsaid = dynamics::input_taken_as_zero(model, data);
+    result.problems.insert(result.problems.end(), unsaid.begin(), unsaid.end());
     drop_copies(all_used, data, result.problems);
     put_together(std::move(all_used), result);
     check_velocities(result, data);

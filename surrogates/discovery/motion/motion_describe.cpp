@@ -147,7 +147,7 @@ void MotionLoop::describe() {
                    result_.alternatives.front().told_apart_by + "."
              : "No further experiment is designed for " + shape().words +
                    "; runs in other states and with other inputs would show effects below the limits given here.";
-    for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_)}) {
+    for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_, data_)}) {
         result_.problems.insert(result_.problems.end(), more.begin(), more.end());
     }
     result_.problems.push_back({core::Problem::Severity::note,

@@ -165,14 +165,29 @@ void check_time_series(const MeasuredRun& run, const std::string& motion) {
     }
 }
 
-/// The rows between begin and end.
-core::Table cut_out(const core::Table& table, const LogWindow& window) {
+/// The rows between begin and end. Throws core::InputError where there is none.
+core::Table cut_out(const core::Table& table, const LogWindow& window, const core::TomlTable& entry) {
     std::vector<std::size_t> rows;
     const std::vector<double>& time = table.numbers("time");
     for (std::size_t i = 0; i < time.size(); ++i) {
         if (!(time[i] < window.begin) && !(time[i] > window.end)) {
             rows.push_back(i);
         }
+    }
+    if (rows.empty() && !time.empty()) {
+        const bool late = window.begin > time.back();
+        const char* key = late || !std::isfinite(window.end) ? "begin" : "end";
+        throw core::InputError("range",
+                               std::string("no row of the file lies ") +
+                                   (std::isfinite(window.begin) ? "after begin = " : "before end = ") +
+                                   core::format_number(std::isfinite(window.begin) ? window.begin : window.end, 9) +
+                                   " s" +
+                                   (std::isfinite(window.begin) && std::isfinite(window.end)
+                                        ? " and before end = " + core::format_number(window.end, 9) + " s"
+                                        : "") +
+                                   ": its time goes from " + core::format_number(time.front(), 9) + " to " +
+                                   core::format_number(time.back(), 9) + " s",
+                               entry.place(key), "begin and end are on the clock of the file");
     }
     return table.selected(rows);
 }
@@ -196,7 +211,7 @@ core::Table read_run(const std::filesystem::path& file, const LogChannels& chann
     }
     core::Table table = core::read_csv(file);
     const bool whole = std::isinf(window.begin) && std::isinf(window.end);
-    return whole || table.find("time") == nullptr ? std::move(table) : cut_out(table, window);
+    return whole || table.find("time") == nullptr ? std::move(table) : cut_out(table, window, entry);
 }
 
 LogWindow read_window(const core::TomlTable& entry) {

@@ -1,8 +1,13 @@
 #include "surrogates/dynamics/model/taken_as_zero.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
+
+#include "core/counted.h"
+#include "core/units.h"
+#include "surrogates/dynamics/model/force_sources.h"
 
 namespace underbody::dynamics {
 
@@ -79,10 +84,57 @@ core::Problems taken_as_zero_of_body(const Model& model, bool touches) {
                          touches, "in the motion of the whole body");
 }
 
-core::Problems taken_as_zero(const std::string& motion, const Model& model) {
+namespace {
+
+/// Columns of forces, voltages and flows, with which an input may have been meant: "lift_force" or "jet_voltage".
+std::set<std::string> likely_inputs(const MeasuredRun& run) {
+    std::set<std::string> names;
+    for (const core::Column& column : run.table.columns()) {
+        const bool alike = !column.is_text() && !column.name.ends_with("_sigma") &&
+                           (core::same_dimension(column.unit, "N") || core::same_dimension(column.unit, "V") ||
+                            core::same_dimension(column.unit, "m^3/s"));
+        if (alike) {
+            names.insert(column.name);
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
+core::Problems input_taken_as_zero(const Model& model, const Measurements& data) {
+    const bool by_jet = std::any_of(model.forces.begin(), model.forces.end(), driven_by_jet);
+    std::set<std::string> instead;
+    std::size_t without = 0;
+    std::string first;
+    for (const MeasuredRun& run : data.runs) {
+        if (run.has("input_force") || (by_jet && (run.has("jet_voltage") || run.has("jet_flow")))) {
+            continue;
+        }
+        first = without++ == 0 ? run.table.source : first;
+        instead.merge(likely_inputs(run));
+    }
+    if (without == 0) {
+        return {};
+    }
+    std::string list;
+    for (const std::string& name : instead) {
+        list += (list.empty() ? "" : ", ") + name;
+    }
+    return {{core::Problem::Severity::warning,
+             "no input_force is recorded in " + std::to_string(without) + " of " +
+                 core::counted(data.runs.size(), "run") + "; none is taken to act" +
+                 (list.empty() ? ""
+                               : " (" + list + (instead.size() == 1 ? " is" : " are") +
+                                     " not taken for it: a force that acted is a column input_force)") +
+                 ". conditions.input_force = 0 says that nothing pushes",
+             {first, {}, {}, {}}}};
+}
+
+core::Problems taken_as_zero(const std::string& motion, const Model& model, const Measurements& data) {
     return motion == "surface" ? taken_as_zero_on_ground(model)
            : motion == "body"  ? taken_as_zero_of_body(model, false)
-                               : core::Problems{};
+                               : input_taken_as_zero(model, data);
 }
 
 }  // namespace underbody::dynamics

@@ -1,9 +1,10 @@
-// What a motion rests on that its model does not say.
+// What a motion rests on that neither its model nor its runs say.
 #pragma once
 
 #include <string>
 
 #include "core/error.h"
+#include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/model.h"
 
 namespace underbody::dynamics {
@@ -14,7 +15,11 @@ namespace underbody::dynamics {
 core::Problems taken_as_zero_on_ground(const Model& model);
 /// Of the whole body: drag in all directions, and contact.friction where it `touches` the ground.
 core::Problems taken_as_zero_of_body(const Model& model, bool touches);
-/// Of the motion that measured runs are of: "surface", "body"; nothing of others.
-core::Problems taken_as_zero(const std::string& motion, const Model& model);
+/// A warning of runs of heave (with pitch) that say nothing of what pushed them: neither a column nor a condition
+/// input_force, and no voltage or flow of a jet that drives a force of the model. None is taken to act on them then;
+/// columns that may be meant for it are named.
+core::Problems input_taken_as_zero(const Model& model, const Measurements& data);
+/// What applies to the motion that measured runs are of: "heave", "heave_pitch", "surface", "body".
+core::Problems taken_as_zero(const std::string& motion, const Model& model, const Measurements& data);
 
 }  // namespace underbody::dynamics

@@ -564,8 +564,9 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     const std::optional<Measurements> without = steady ? std::nullopt : without_doubtful_noise(model, data, before);
     Prediction prediction =
         steady ? predict_static(model, data) : predict_series(model, without ? *without : data, options, progress);
-    for (core::Problem& unsaid : taken_as_zero(prediction.motion, model)) {
-        before.push_back(std::move(unsaid));
+    if (!steady) {
+        const core::Problems unsaid = taken_as_zero(prediction.motion, model, data);
+        before.insert(before.end(), unsaid.begin(), unsaid.end());
     }
     prediction.remarks.insert(prediction.remarks.begin(), before.begin(), before.end());
     const core::Problems outside = runs_outside(model, data);

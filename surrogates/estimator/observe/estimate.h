@@ -65,7 +65,7 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
                     core::Progress& progress = core::Progress::none());
 
 /// Signals of a measured run, read as `records` says: gaps in time stay gaps, missing inputs are interpolated (and said
-/// in `remarks`).
+/// in `remarks`); of a run without an input none acts.
 RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& remarks,
                           const dynamics::RecordReading& records = {});
 

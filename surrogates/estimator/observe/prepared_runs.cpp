@@ -5,6 +5,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
@@ -88,6 +89,8 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
                           (reading.from == "data" ? "the measured motion fits that better" : "the model's [records]") +
                           ")");
     }
+    const core::Problems unsaid = dynamics::input_taken_as_zero(model, data);
+    remarks.insert(remarks.end(), unsaid.begin(), unsaid.end());
     std::vector<Prepared> all;
     for (const auto& run : data.runs) {
         all.push_back(
@@ -168,9 +171,6 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
     s.gap = run.values("gap");
     s.velocity = dynamics::as_read(run, "heave_velocity", records);
     if (run.table.find("input_force") == nullptr) {
-        if (run.conditions.find("input_force") == run.conditions.end()) {
-            note(remarks, "run '" + run.name + "': no input_force is recorded; none is taken to act");
-        }
         return s;
     }
     s.input = dynamics::as_read(run, "input_force", records);

@@ -214,6 +214,30 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
     } catch (const core::InputError& error) {
         EXPECT_EQ(error.kind(), "unit") << error.message();
     }
+    // what is no matter of units: a sign, a run just beyond the tables
+    const auto refused_at = [&](double factor, double shift) {
+        std::vector<double> gap = data.runs[0].table.numbers("gap");
+        for (double& value : gap) {
+            value = factor * value + shift;
+        }
+        core::Table other;
+        other.source = "run-1.csv";
+        other.add_numbers("time", "s", data.runs[0].table.numbers("time"));
+        other.add_numbers("gap", "m", gap);
+        other.add_numbers("input_force", "N", data.runs[0].table.numbers("input_force"));
+        wrong.runs[0].table = other;
+        try {
+            (void)prepare_heave_records(model, wrong);
+        } catch (const core::InputError& error) {
+            return error.message() + " | " + error.hint();
+        }
+        return std::string("taken");
+    };
+    const std::string turned = refused_at(-1, 0), beyond = refused_at(1, 1);
+    EXPECT_NE(turned.find("with the other sign it would fit"), std::string::npos) << turned;
+    EXPECT_EQ(turned.find("thousand"), std::string::npos) << turned;
+    EXPECT_NE(beyond.find("outside the tables"), std::string::npos) << beyond;
+    EXPECT_EQ(beyond.find("thousand"), std::string::npos) << beyond;
     // a sensor that stands still
     core::Table stuck;
     stuck.source = "run-1.csv";

@@ -2,6 +2,7 @@
 
 #include "core/file.h"
 #include "surrogates/dynamics/model/measurements.h"
+#include "surrogates/dynamics/model/taken_as_zero.h"
 
 using namespace underbody;
 using namespace underbody::dynamics;
@@ -69,6 +70,39 @@ TEST_F(MeasurementFiles, TellColumnsThatNobodyReadsAndRefuseARunWhoseInputWouldV
     // With its right name beside it, the other column is just another.
     write("a.csv", "time [s], gap [mm], input_force [N], force_in [mN]\n0, 10, 1, 1\n0.02, 11, 2, 1\n0.04, 12, 3, 1\n");
     EXPECT_EQ(read_measurements(folder_.path()).problems.size(), 2U);
+}
+
+TEST_F(MeasurementFiles, NameTheWindowThatNoRowLiesIn) {
+    write("a.csv", "time [s], gap [m]\n5, 1\n5.02, 1.1\n5.04, 1.2\n");
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\nbegin = \"100 s\"\n");
+    core::InputError error = failure();
+    EXPECT_EQ(error.message(), "no row of the file lies after begin = 100 s: its time goes from 5 to 5.04 s");
+    EXPECT_EQ(error.place().line, 4);  // was: "a time series of 0 rows"
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\nbegin = \"1 s\"\nend = \"2 s\"\n");
+    error = failure();
+    EXPECT_NE(error.message().find("after begin = 1 s and before end = 2 s: its time goes from 5"), std::string::npos);
+    EXPECT_EQ(error.place().line, 5);
+}
+
+TEST_F(MeasurementFiles, SayThatNoInputIsRecordedInOneVoiceAndWhatMayBeMeantForIt) {
+    const Model model;
+    const auto told = [&](const std::string& columns, const std::string& conditions = "") {
+        write("dataset.toml", "kind = \"time_series\"\n[conditions]\n" + conditions +
+                                  "[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n");
+        write("a.csv", "time [s], gap [m]" + columns + "\n0, 1, 1\n1, 2, 3\n2, 3, 4\n");
+        write("b.csv", "time [s], gap [m], input_force [N]\n0, 2, 1\n1, 2, 3\n2, 3, 4\n");
+        const core::Problems all = taken_as_zero("heave", model, read_measurements(folder_.path()));
+        return all.empty() ? "" : all.front().message;
+    };
+    EXPECT_EQ(told(", input_force [N]"), "");
+    EXPECT_EQ(told(", pitch [deg]", "input_force = 0\n"), "");
+    EXPECT_EQ(told(", pitch [deg]"),
+              "no input_force is recorded in 1 of 2 runs; none is taken to act. "
+              "conditions.input_force = 0 says that nothing pushes");
+    for (const char* column : {"lift_force [N]", "jet_voltage [V]", "thrust [N]"}) {
+        const std::string name = std::string(column).substr(0, std::string(column).find(' '));
+        EXPECT_NE(told(std::string(", ") + column).find("(" + name + " is not taken for it"), std::string::npos);
+    }
 }
 
 TEST_F(MeasurementFiles, UseARunThatStandsTwiceOnce) {
