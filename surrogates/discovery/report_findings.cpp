@@ -147,9 +147,11 @@ void tell_limits(const Judgement& j, Discovery& result) {
     for (const Attribution::Share& share : j.attribution.shares) {
         const FittedHypothesis& one = j.fitted[share.hypothesis];
         if (one.hypothesis.names.size() == 1 && !one.hypothesis.parameters.empty()) {
+            const std::string& declared = one.hypothesis.uses.front().parameter;  // the number that "value" is of
+            const FitParameter& number = one.hypothesis.parameters.front();
             // five standard deviations: seen 9 times in 10 by a gate of about 3.7
-            result.limits.push_back({one.hypothesis.names.front(), one.hypothesis.parameters.front().name,
-                                     5 * one.fit.sigma.front(), one.hypothesis.parameters.front().unit});
+            result.limits.push_back({one.hypothesis.names.front(), declared.empty() ? number.name : declared,
+                                     5 * one.fit.sigma.front(), number.unit});
         }
     }
 }
