@@ -56,6 +56,32 @@ TEST_F(StudyCommand, WarnsOfGapsThatTheFilesContradictAndOfCopies) {
     EXPECT_THAT(metres.output, HasSubstr("is it in mm, and was read in m?"));
 }
 
+TEST_F(StudyCommand, WarnsOfPitchesAndSpeedsThatTheFilesContradict) {
+    const fs::path tilted = scratch.path() / "tilted";
+    for (const auto& [from, to] : {std::pair{"0", "0"}, {"1", "1"}, {"-1", "-1"}, {"2", "-2"}, {"-2", "2"}}) {
+        fs::create_directories(tilted / "fields");
+        fs::copy_file(test::source_folder() / "cases/evie/fields" / (std::string("ellipse-h10-p") + from + ".csv"),
+                      tilted / "fields" / (std::string("ellipse-h10-p") + to + ".csv"));
+    }
+    const auto warnings = [&](const std::string& unit, const std::string& speed) {
+        core::write_file(tilted / "study.toml",
+                         "title = \"t\"\n[frame]\nsymmetry = \"y\"\n[reference]\ndensity = 998\n" +
+                             ("[[case]]\nfiles = \"fields/{variant}-h{gap:mm}-p{pitch:" + unit) +
+                             "}.csv\"\nconditions.speed = \"" + speed + "\"\n");
+        const ProgramRun all = run_underbody({"study", "run", tilted.string(), "--no-pictures", "--json"});
+        EXPECT_EQ(all.exit_code, 0) << all.errors;
+        return json::parse(all.output).at("warnings").dump();
+    };
+    const std::string exchanged = warnings("deg", "0.5 m/s"), turned = "but in the file the base is pitched by ";
+    EXPECT_THAT(exchanged, HasSubstr("declared as 2 deg, " + turned + "-2 deg"));
+    EXPECT_THAT(exchanged, HasSubstr("declared as -2 deg, " + turned + "2 deg"));
+    EXPECT_THAT(exchanged, testing::Not(HasSubstr("declared as 1 deg")));
+    EXPECT_THAT(exchanged, testing::Not(HasSubstr("1/2 rho U^2")));
+    EXPECT_THAT(warnings("rad", "0.5 m/s"), HasSubstr("is it in deg, and was read in rad?"));
+    EXPECT_THAT(warnings("deg", "0.5 km/h"), HasSubstr("is the speed in m/s, and was read in km/h?"));
+    EXPECT_THAT(warnings("deg", "5 m/s"), HasSubstr("1/2 rho U^2"));
+}
+
 TEST_F(StudyCommand, VerifySaysWhatTheScatterOfTheRunExcuses) {
     core::write_file(study / "forces.csv",
                      "gap [mm], lift_force [N], lift_force_scatter [N], drag_force [N]\n1, 0.6, 0, 0\n2, 0.5, 0, 0\n"
