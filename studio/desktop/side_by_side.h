@@ -78,6 +78,11 @@ public:
         place();
     }
     [[nodiscard]] QTabBar* tabs() const { return tabs_; }
+    /// Of one of them under its tab: both beside each other make no window wider.
+    [[nodiscard]] QSize minimumSizeHint() const override {
+        const QSize one = left_->minimumSizeHint().expandedTo(right_->minimumSizeHint());
+        return {one.width(), one.height() + tabs_->sizeHint().height()};
+    }
     /// Which of them are to be seen at all.
     void want(bool left, bool right) {
         want_left_ = left;
