@@ -453,8 +453,8 @@ void DesignPanel::draw_section() {
         return;
     }
     core::Figure figure = shown_->section;
+    section_cell_->set_title(before_ ? "Section, before as a thin line" : "Section");
     if (before_) {
-        figure.title += " (thin: before)";
         for (core::FigureCurve curve : before_->section.curves) {
             if (curve.width >= 2) {  // the outline, not its dimensions
                 curve.width = 0.8;

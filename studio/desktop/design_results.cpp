@@ -41,7 +41,7 @@ const std::vector<Result>& results() {
         {"buoyancy", [](const LiveBody& b) { return shown(b.mass.buoyancy(), 1, 5, "N"); }},
         {"area", [](const LiveBody& b) { return shown(b.mass.area, 1e4, 5, "cm²"); }},
         {"base area", [](const LiveBody& b) { return shown(b.base_area, 1e4, 5, "cm²"); }},
-        {"centroid above base", [](const LiveBody& b) { return shown(b.mass.centroid.z, 1e3, 5, "mm"); }},
+        {"centroid height", [](const LiveBody& b) { return shown(b.mass.centroid.z, 1e3, 5, "mm"); }},
         {"clearance", [](const LiveBody& b) { return shown(b.clearance.smallest, 1e3, 4, "mm"); }},
         {"certificate",
          [](const LiveBody& b) {
@@ -262,6 +262,9 @@ void DesignPanel::draw_lift() {
         }
         figure = tables::curve_figure(*table_, options);
         figure.title = lift_.words();
+        for (auto& points : figure.points) {  // the legend leaves its room to the curve
+            points.name = points.name.starts_with("points") ? "" : points.name;
+        }
         const bool exact = lift_.basis == cases::KnownLift::Basis::this_shape;
         for (auto& curve : figure.curves) {
             curve.dashed = curve.dashed || !exact;

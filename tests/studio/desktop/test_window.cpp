@@ -131,7 +131,9 @@ TEST_F(Window, ShowsTheBodyOfTheLibraryAndUndoBringsItBack) {
     const auto with_before = [&] {
         const auto plots = design.findChildren<PlotView*>();
         return std::count_if(plots.begin(), plots.end(), [](const PlotView* plot) {
-            return plot->has_figure() && plot->figure().title.find("before") != std::string::npos;
+            const auto& curves = plot->figure().curves;
+            return plot->has_figure() && std::any_of(curves.begin(), curves.end(),
+                                                     [](const core::FigureCurve& curve) { return curve.width == 0.8; });
         });
     };
     EXPECT_EQ(with_before(), 1) << "its outline in the section";
