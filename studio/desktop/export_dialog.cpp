@@ -58,7 +58,7 @@ void ExportDialog::build() {
     proof_->setWordWrap(true);
     form->addRow(proof_);
     error_ = new PlotView(this);
-    error_->set_least(QSize(200, 150));
+    error_->set_least(QSize(200, 220));
     form->addRow(error_);
     halves->addWidget(left);
     text_ = new QPlainTextEdit;
