@@ -59,8 +59,9 @@ std::string limits_text(const discovery::Discovery& found) {
         }
     }
     return text.empty() ? ""
-                        : "\nSmallest effects that these data would have shown, nine times in ten (all of them in the "
-                          "report):\n" +
+                        : "\nSmallest effects that would stand out of the noise of the fitted data, nine times in ten "
+                          "(all of them in "
+                          "the report; to be named an effect must lower the error of held-out data, too):\n" +
                               text;
 }
 
@@ -70,7 +71,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     for (const discovery::FoundEffect& effect : found.effects) {
         text += "\n" + effect.name + ", probability " + discovery::probability_text(effect.probability) + "\n";
         for (const discovery::FoundParameter& parameter : effect.parameters) {
-            text += "  " + parameter.name + " = " + discovery::value_text(parameter) + "\n";
+            text += "  " + discovery::number_name(effect, parameter) + " = " + discovery::value_text(parameter) + "\n";
         }
     }
     if (missing && !found.alternatives.empty()) {

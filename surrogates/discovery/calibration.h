@@ -12,13 +12,15 @@ namespace underbody::discovery {
 struct Calibration {
     double gate = 0.01;        ///< the gate opens below this chance
     double form_share = 0.01;  ///< share of what is explained that a law of another form may miss: widens probabilities
-    double unknown_share = 0.15;     ///< share of the structure that the best name may leave before it is "unknown"
-    double unknown_p = 0.002;        ///< and the chance below which what is left is real
-    double pair_share = 0.05;        ///< least share of the explained part that a second effect must add
-    double pair_gain = 25;           ///< and its least gain in -2 log likelihood
-    double most_effects = 4;         ///< at once
-    double fall_tail = 0.025;        ///< chance beyond each end of the interval of the held-out error's fall
-    double most_over_twins = 1.3;    ///< held-out error over that of twins in which nothing is missing: above, no noise
+    double unknown_share = 0.15;   ///< share of the structure that the best name may leave before it is "unknown"
+    double unknown_p = 0.002;      ///< and the chance below which what is left is real
+    double pair_share = 0.05;      ///< least share of the explained part that a second effect must add
+    double pair_gain = 25;         ///< and its least gain in -2 log likelihood
+    double most_effects = 4;       ///< at once
+    double fall_tail = 0.025;      ///< chance beyond each end of the interval of the held-out error's fall
+    double most_over_twins = 1.3;  ///< held-out error over that of twins in which nothing is missing: above, no noise
+    double most_over_declared =
+        2.5;                         ///< declared noise figures that coloured noise may reach: what is more is no noise
     double most_left = 0.08;         ///< share of what the declared model misses beyond its twins that a name may leave
     double neutral_sigmas = 2;       ///< a number nearer to where its effect does nothing is no finding
     double rest_chance = 1e-3;       ///< chance, from noise, of a static rest above most_over_twins: less is no noise

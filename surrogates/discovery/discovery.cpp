@@ -202,7 +202,7 @@ nlohmann::json to_json(const Discovery& d) {
     }
     json["none_probability"] = d.none_probability;
     json["depends_on"] = d.depends_on;
-    json["gate"] = {{"p", d.gate}};
+    json["gate"] = {{"p", d.gate}, {"open", d.structure}};
     json["stability"] = d.stability;
     nlohmann::json& noise = json["noise"] = nlohmann::json::object();
     for (const auto& [channel, used] : d.noise) {

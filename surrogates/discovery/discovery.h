@@ -133,7 +133,8 @@ struct Discovery {
     double none_probability = 0;
     std::vector<std::string> depends_on;  ///< of the residual, found without any named effect
     double gate = 1;                      ///< chance of as much structure when nothing is missing
-    double stability = 0;                 ///< share of resampled runs with the same verdict
+    bool structure = false;  ///< that chance is so small that the fitted data hold more than noise, named or not
+    double stability = 0;    ///< share of resampled runs with the same verdict
     std::map<std::string, NoiseUsed> noise;
     std::vector<ErrorChange> error;  ///< the first is the chief one
     std::string held_out;            ///< which data the error is from

@@ -38,7 +38,7 @@ std::string with_interval(const ErrorEstimate& e) {
 
 std::string headline(const Discovery& d) {
     if (d.verdict == "none") {
-        return "Nothing is missing from the model";
+        return d.structure ? "No effect is named" : "Nothing is missing from the model";
     }
     if (d.verdict == "unknown") {
         return "Something is missing that the catalogue does not know: it depends on " + list_of(d.depends_on);
@@ -206,7 +206,7 @@ void add_noise_and_limits(core::HtmlPage& page, const Discovery& d) {
                               core::format_number(limit.value, 3) + (limit.unit == "1" ? "" : " " + limit.unit)});
         }
     }
-    const std::string title = "Smallest effects that these data would have shown" +
+    const std::string title = "Smallest effects that would stand out of the noise of the fitted data" +
                               std::string(d.effects.empty() ? "" : " beside what was found") + " (nine times in ten)";
     if (d.verdict == "none") {
         page.table({"effect", "number", "limit"}, limits, title);

@@ -66,6 +66,11 @@ std::string value_text(const FoundParameter& parameter) {
            (unit.empty() ? "" : " " + unit);
 }
 
+std::string number_name(const FoundEffect& effect, const FoundParameter& parameter) {
+    const bool declared = effect.uses.size() == 1 && !effect.uses.front().parameter.empty();
+    return declared && effect.parameters.size() == 1 ? effect.uses.front().parameter : parameter.name;
+}
+
 std::string probability_text(double probability) {
     return probability > 0.995   ? "above 0.99"
            : probability < 0.005 ? "below 0.01"
@@ -104,12 +109,23 @@ std::string verdict_names(const Discovery& discovery) {
     return text;
 }
 
+namespace {
+
 std::string settling_text(double chance) {
     const std::string percent = chance > 0.995   ? "above 99 %"
                                 : chance < 0.005 ? "below 1 %"
                                                  : core::format_number(100 * chance, 2) + " %";
     return chance < 0.5 ? "even this would settle it (odds of 20 to 1) with a chance of only " + percent
                         : "this settles it (odds of 20 to 1) with a chance of " + percent;
+}
+
+}  // namespace
+
+std::string experiment_text(const std::string& purpose, const std::string& runs, double chance) {
+    constexpr double hopeless = 0.05;
+    return purpose + ": " +
+           (chance < hopeless ? "no experiment of this kind on this rig settles it; the best that was found, " : "") +
+           runs + "; " + settling_text(chance);
 }
 
 namespace {
@@ -119,7 +135,7 @@ namespace {
 std::string named(const FoundEffect& effect) {
     if (effect.uses.size() == 1 && !effect.uses.front().parameter.empty() && effect.parameters.size() == 1) {
         const FoundParameter& value = effect.parameters.front();
-        return "another value of the declared " + effect.uses.front().parameter + ": " + value_text(value);
+        return "another value of the declared " + number_name(effect, value) + ": " + value_text(value);
     }
     std::string text = effect.name;
     for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
@@ -196,6 +212,18 @@ std::string unknown_sentence(const Discovery& discovery, const std::string& erro
                               " beyond its interval.");
 }
 
+/// What was fitted holds more than noise, and nothing that was tried predicts other data better.
+std::string unconfirmed_sentence(const Discovery& discovery) {
+    return "No effect is named: the error" + error_is_on(discovery) +
+           " is that of noise, and nothing that was tried lowers it beyond its interval. What was fitted holds more "
+           "structure than noise would (chance " +
+           core::format_number(discovery.gate, 2) + ")" +
+           (discovery.alternatives.empty() ? std::string()
+                                           : "; nearest to it is " + named(discovery.alternatives.front())) +
+           "." +
+           (discovery.mended.empty() ? "" : " The logs were read anew: " + discovery.mended + "; the model says so.");
+}
+
 }  // namespace
 
 std::string error_is_on(const Discovery& discovery) { return error_is_on(discovery.held_out); }
@@ -210,9 +238,12 @@ std::string verdict_sentence(const Discovery& discovery) {
             ? ""
             : (is_fitted(discovery.held_out) ? " On the data it was fitted to" : " On held-out data") +
                   std::string(" the error of ") + discovery.error.front().channel +
-                  (discovery.error.front().after.rmse > 1.01 * discovery.error.front().before.rmse ? " rises from "
-                                                                                                   : " falls from ") +
+                  (discovery.error.front().after.rmse > discovery.error.front().before.rmse ? " rises from "
+                                                                                            : " falls from ") +
                   error_text(discovery.error.front()) + "." + worse_elsewhere(discovery);
+    if (discovery.verdict == "none" && discovery.structure) {
+        return unconfirmed_sentence(discovery) + error;
+    }
     if (discovery.verdict == "none") {
         return (discovery.mended.empty()
                     ? std::string("Nothing is missing")

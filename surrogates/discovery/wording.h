@@ -29,12 +29,14 @@ std::string rest_sentence(const Discovery& discovery);
 
 /// "9.8 ± 0.4 mN".
 std::string value_text(const FoundParameter& parameter);
+/// What a number of an effect is called: its name, or of a declared one that is off that: "force.2.factor".
+std::string number_name(const FoundEffect& effect, const FoundParameter& parameter);
 
 /// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
 std::string probability_text(double probability);
 
-/// What a next experiment promises, of the chance that it reaches odds of 20 to 1: "this settles it (odds of 20 to 1)
-/// with a chance of 97 %".
-std::string settling_text(double chance);
+/// A next experiment: what for, which runs, and the chance that they reach odds of 20 to 1 ("this settles it (odds of
+/// 20 to 1) with a chance of 97 %"); where that is next to none, that none of its kind settles it.
+std::string experiment_text(const std::string& purpose, const std::string& runs, double chance);
 
 }  // namespace underbody::discovery

@@ -42,6 +42,10 @@ HeaveLoop::RunByRun HeaveLoop::run_by_run(const Hypothesis& candidate, const std
     if (!std::all_of(all.values.begin(), all.values.end(), [](double x) { return std::isfinite(x); })) {
         return out;
     }
+    if (std::any_of(out.value.begin(), out.value.end(),
+                    [&](double value) { return value < number.lower || value > number.upper; })) {
+        return out;  // beyond what is possible: it stands in for something else
+    }
     out.probe.columns = orthonormal_beside(orthonormal(all), each);
     out.probe.gain = explained_square(out.probe.columns, innovations);
     out.probe.surprise = surprise(out.probe.gain, static_cast<double>(out.probe.columns.columns));
@@ -68,6 +72,12 @@ void HeaveLoop::look_run_by_run() {
     });
     if (best == found.end() || best->probe.surprise < calibration_.by_run_surprise) {
         return;
+    }
+    if (!whole_list_.empty()) {  // a law that is the same in all runs explains more: over time, say
+        const SmoothFit& law = best_smooth(whole_list_).fit;
+        if (surprise(law.gain, law.degrees) > best->probe.surprise) {
+            return;
+        }
     }
     const double middle = median(best->value);
     bool clear = false;

@@ -439,6 +439,41 @@ HeaveLoop::InputReading HeaveLoop::better_input() {
     return best;
 }
 
+namespace {
+
+/// Nothing is known of what was commanded after the record's end.
+void leave_out_what_follows(HeaveRecords& records) {
+    for (HeaveRecord& record : records.records) {
+        for (std::size_t k = 0; k < record.time.size(); ++k) {
+            if (record.time[k] > record.raw_time.back() + 0.02) {
+                record.gap[k] = std::nan("");
+                if (!record.velocity.empty()) {
+                    record.velocity[k] = std::nan("");
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void HeaveLoop::fit_again() {
+    held_out_.reset();
+    fit_null();
+    fit_singles();
+    try_hold();
+    colour_noise();
+    open_gate();
+}
+
+/// The declared model or the best single effect, whichever predicts the held-out runs better.
+HeaveLoop::Answer HeaveLoop::best_answer() {
+    Answer declared = answer_of({}, null_noise_);
+    const FittedHypothesis& best = fitted_[best_single_];
+    Answer named = answer_of(best.hypothesis.with(best.fit.parameters), noises_[best_single_]);
+    return held_out_error(named) < held_out_error(declared) ? named : declared;
+}
+
 void HeaveLoop::check_input() {
     if (!records_.input_recorded) {
         return;
@@ -452,36 +487,38 @@ void HeaveLoop::check_input() {
         experiment_->set_hold(hold);
         return;
     }
+    smooth_corrections();
+    const Answer before = best_answer();
+    const std::optional<Answer> law = smooth_answer();
+    const HeaveRecords as_logged = records_;
+    const std::optional<HeaveRecords> test_as_logged = test_records_;
     change_input(-early, factor);
+    leave_out_what_follows(records_);
+    if (test_records_) {
+        leave_out_what_follows(*test_records_);
+    }
+    fit_again();
+    const Answer after = best_answer();
+    if (!falls(before, after) || (law && !falls(*law, after))) {  // it made up for something else
+        records_ = as_logged;
+        test_records_ = test_as_logged;
+        experiment_->set_hold(hold);
+        fit_again();
+        return;
+    }
     records_read_.input_advance += early;
     records_read_.input_factor *= factor;
     result_.mended = factor == 1 ? "input_force " + core::format_number(early, 2) + " s earlier"
                                  : "input_force times " + core::format_number(factor, 4);
     if (factor == 1) {
         warn("the recorded input comes about " + core::format_number(early, 2) +
-             " s after the motion that it makes: the clocks of input_force and gap differ; the input was moved forward "
-             "by that much");
+             " s after the motion that it makes: the clocks of input_force and gap differ, or the vehicle has a law "
+             "that leads as much; the input was moved forward by that much");
     } else {
         warn("the motion fits an input_force " + core::format_number(factor, 4) + " times the recorded one: " +
              (factor < 0 ? "its sign is turned round (up is positive)" : "its unit is wrong by a thousand") +
              "; it was used so");
     }
-    // nothing is known of what was commanded after the record's end
-    for (HeaveRecord& record : records_.records) {
-        for (std::size_t k = 0; k < record.time.size(); ++k) {
-            if (record.time[k] > record.raw_time.back() + 0.02) {
-                record.gap[k] = std::nan("");
-                if (!record.velocity.empty()) {
-                    record.velocity[k] = std::nan("");
-                }
-            }
-        }
-    }
-    fit_null();
-    fit_singles();
-    try_hold();
-    colour_noise();
-    open_gate();
 }
 
 Discovery discover_heave(const dynamics::Model& model, const dynamics::Measurements& data,

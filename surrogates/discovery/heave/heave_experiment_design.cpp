@@ -159,8 +159,8 @@ void next_heave_experiment(const HeaveExperiment& experiment, const std::vector<
     const double repeats = 8;
     result.next_power = chance_to_settle(trial.separation * std::sqrt(repeats));
     result.next_experiment =
-        purpose + ": " + trial.text + ", 10 s, " + core::format_number(repeats, 2) +
-        " times; odds of 20 to 1 or better with probability " + core::format_number(result.next_power, 2) +
+        experiment_text(purpose, trial.text + ", 10 s, " + core::format_number(repeats, 2) + " times",
+                        result.next_power) +
         " (next-experiment.csv; holding force by the declared model, a controller may be added to it)";
     result.next_set_points.add_numbers("time", "s", trial.time);
     result.next_set_points.add_numbers("input_force", "N", trial.input);

@@ -89,6 +89,10 @@ std::optional<HeaveLoop::Answer> HeaveLoop::smooth_answer() {
     if (usable.empty() || best_smooth(whole_list_).set.variables.empty()) {
         return {};
     }
+    const std::vector<Variable>& likeliest = best_smooth(whole_list_).set.variables;
+    if (std::find(likeliest.begin(), likeliest.end(), Variable::time) != likeliest.end()) {
+        return {};  // nor does one over what follows time through the controller
+    }
     const HeaveExperiment::Smooth smooth = refined(best_smooth(usable));
     Answer answer = answer_of({force_table(smooth.force, largest_force(smooth))}, smooth.noise);
     answer.variables = smooth.fit.variables;

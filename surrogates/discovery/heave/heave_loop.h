@@ -43,6 +43,7 @@ private:
     /// Cost of the likeliest explanation, alone or with one of `beside`, where the input is read so.
     [[nodiscard]] double cost_with_input(double seconds, double times, const std::vector<std::size_t>& beside);
     [[nodiscard]] InputReading better_input();
+    void fit_again();
     void check_input();
     void change_input(double seconds, double factor);
     [[nodiscard]] dynamics::RecordReading reading_found() const;
@@ -112,6 +113,7 @@ private:
     [[nodiscard]] std::vector<double> horizons() const;
     [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise);
     [[nodiscard]] Answer declared_answer(const HeaveNoise& other);
+    [[nodiscard]] Answer best_answer();
     [[nodiscard]] double held_out_error(const Answer& answer) const;  ///< m, over the first horizon
     [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
     [[nodiscard]] bool rest_is_noise(const Answer& answer);

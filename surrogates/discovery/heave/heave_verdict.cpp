@@ -278,6 +278,7 @@ void HeaveLoop::decide() {
     tie_delays();
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
+    result_.structure = gate_ < calibration_.gate;
     result_.none_probability = attribution_.none_probability;
     result_.model = model_;
     result_.model.records = reading_found();

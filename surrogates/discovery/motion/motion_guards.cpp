@@ -217,6 +217,7 @@ void MotionLoop::decide() {
     attribution_ = attribute(fitted_, gate_, rest_.fit, calibration_);
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
+    result_.structure = gate_ < calibration_.gate;
     guard();
     result_.none_probability = attribution_.none_probability;
     result_.model = model_with(uses_);

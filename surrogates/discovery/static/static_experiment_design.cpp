@@ -193,10 +193,12 @@ void next_static_experiment(const StaticExperiment& experiment, const std::vecto
         square += repeats * candidate.separation * candidate.separation;
     }
     result.next_power = chance_to_settle(std::sqrt(square));
-    result.next_experiment = ask.purpose + ": " + std::to_string(taken.size()) + " set points, " +
-                             core::format_number(repeats, 2) + " readings each in mixed order, first at " +
-                             where(experiment, list.front()) + "; " + settling_text(result.next_power) +
-                             " (next-experiment.csv)";
+    result.next_experiment =
+        experiment_text(ask.purpose,
+                        std::to_string(taken.size()) + " set points, " + core::format_number(repeats, 2) +
+                            " readings each in mixed order, first at " + where(experiment, list.front()),
+                        result.next_power) +
+        " (next-experiment.csv)";
     add_set_points(experiment, taken, static_cast<int>(repeats), result);
 }
 

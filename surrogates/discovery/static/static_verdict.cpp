@@ -224,6 +224,7 @@ void StaticLoop::decide() {
     attribution_ = attribute(fitted_, gate_, rest_, calibration_);
     result_.verdict = attribution_.verdict;
     result_.gate = gate_;
+    result_.structure = gate_ < calibration_.gate;
     result_.none_probability = attribution_.none_probability;
     result_.model = model_;
     for (const auto& [quantity, figure] : experiment_.noise()) {

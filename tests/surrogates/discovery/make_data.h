@@ -41,6 +41,7 @@ struct HeaveRig {
     bool velocity = false;    ///< measured too, with a noise of 1 mm/s
     bool continuous = false;  ///< the controller follows motion and a waving set point between the samples instead of
                               ///< holding its force from step to step
+    std::function<double(double)> felt = [](double u) { return u; };  ///< what the body feels of a commanded force
 };
 
 /// Heave runs under a controller's force; `extra(t, h, w)` is what the model lacks, N.
@@ -74,7 +75,7 @@ inline dynamics::Measurements heave_runs(const std::function<double(double, doub
             for (int s = 0; s < sub; ++s) {
                 const double step = dt / sub;
                 const auto a = [&](double hh, double ww, double tt) {
-                    return (lift_of(hh) - 0.03 + (rig.continuous ? controlled(hh, ww, tt) : u) - 0.02 * ww -
+                    return (lift_of(hh) - 0.03 + rig.felt(rig.continuous ? controlled(hh, ww, tt) : u) - 0.02 * ww -
                             6 * ww * std::abs(ww) + extra(tt, hh, ww)) /
                            3.954;
                 };
