@@ -12,6 +12,7 @@
 #include "surrogates/dynamics/model/repeated_runs.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
+#include "surrogates/dynamics/simulate/doubtful_clock.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
@@ -477,6 +478,9 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
 }  // namespace
 
 HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data) {
+    if (const auto doubt = dynamics::doubtful_clock(model, data)) {  // minutes of work over what is no motion
+        throw core::InputError("unit", doubt->message, doubt->place, "mend the unit of time in the header line");
+    }
     HeaveRecords result;
     result.step = step_for(data);
     std::vector<UsedRun> all_used;

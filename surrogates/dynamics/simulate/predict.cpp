@@ -18,6 +18,7 @@
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/declared_noise.h"
+#include "surrogates/dynamics/simulate/doubtful_clock.h"
 #include "surrogates/dynamics/simulate/horizon.h"
 #include "surrogates/dynamics/simulate/motion_predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
@@ -567,6 +568,9 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     if (!steady) {
         const core::Problems unsaid = taken_as_zero(prediction.motion, model, data);
         before.insert(before.end(), unsaid.begin(), unsaid.end());
+        if (const auto doubt = prediction.motion == "heave" ? doubtful_clock(model, data) : std::nullopt) {
+            before.push_back(*doubt);
+        }
     }
     prediction.remarks.insert(prediction.remarks.begin(), before.begin(), before.end());
     const core::Problems outside = runs_outside(model, data);

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
+#include "surrogates/dynamics/simulate/doubtful_clock.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
 
@@ -91,6 +92,9 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
     }
     const core::Problems unsaid = dynamics::input_taken_as_zero(model, data);
     remarks.insert(remarks.end(), unsaid.begin(), unsaid.end());
+    if (const auto doubt = dynamics::doubtful_clock(model, data)) {
+        remarks.push_back(*doubt);
+    }
     std::vector<Prepared> all;
     for (const auto& run : data.runs) {
         all.push_back(

@@ -1,12 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/heave/heave_experiment.h"
 #include "surrogates/discovery/residual.h"
+#include "surrogates/dynamics/simulate/doubtful_clock.h"
 #include "surrogates/dynamics/simulate/predict.h"
 
 using namespace underbody;
@@ -168,6 +170,46 @@ TEST(HeaveDiscovery, CannotSeeADelayOfTheGapWithoutARecordedInput) {
     } catch (const core::InputError& error) {
         EXPECT_EQ(error.kind(), "option") << error.message();
     }
+}
+
+TEST(HeaveDiscovery, AsksForTheUnitOfTimesThatTheModelsForcesContradict) {
+    core::TemporaryFolder folder("heave");
+    const dynamics::Model model = test::heave_model(folder.path());
+    const dynamics::Measurements data = test::heave_runs([](double, double, double) { return 0.0; }, 2, 50, 5);
+    const auto timed = [&](double factor) {
+        dynamics::Measurements changed = data;
+        for (dynamics::MeasuredRun& run : changed.runs) {
+            std::vector<double> time = run.table.numbers("time");
+            for (double& t : time) {
+                t *= factor;
+            }
+            core::Table table;
+            table.source = run.table.source;
+            table.add_numbers("time", "s", time);
+            table.add_numbers("gap", "m", run.table.numbers("gap"));
+            table.add_numbers("input_force", "N", run.table.numbers("input_force"));
+            run.table = table;
+        }
+        return changed;
+    };
+    for (const double right : {0.5, 1.0, 2.0}) {  // a model may be that far off
+        EXPECT_FALSE(dynamics::doubtful_clock(model, timed(right))) << right;
+    }
+    for (const auto& [factor, words] : {std::pair{60.0, "60 times shorter: is time in s, and headed [min]?"},
+                                        {1e-3, "1000 times longer: is time in s, and headed [ms]?"},
+                                        {1e3, "1000 times shorter: is time in ms, and headed [s]?"}}) {
+        const auto doubt = dynamics::doubtful_clock(model, timed(factor));
+        ASSERT_TRUE(doubt) << factor;
+        EXPECT_NE(doubt->message.find(words), std::string::npos) << doubt->message;
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    try {
+        (void)prepare_heave_records(model, timed(60));  // ten minutes of work before
+        ADD_FAILURE() << "minutes were taken for seconds";
+    } catch (const core::InputError& error) {
+        EXPECT_EQ(error.kind(), "unit") << error.message();
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
