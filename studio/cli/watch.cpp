@@ -271,7 +271,8 @@ private:
         std::string text = seconds(last_) + ": " + found.sentence;
         for (const auto& effect : found.effects) {
             for (const auto& parameter : effect.parameters) {
-                text += "\n  " + effect.name + ": " + parameter.name + " = " + discovery::value_text(parameter);
+                text += "\n  " + effect.name + ": " + discovery::number_name(effect, parameter) + " = " +
+                        discovery::value_text(parameter);
             }
         }
         say(event, text);
