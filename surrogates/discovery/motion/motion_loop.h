@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/random.h"
 #include "surrogates/discovery/attribution.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/guards.h"
