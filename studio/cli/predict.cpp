@@ -2,6 +2,7 @@
 #include "surrogates/dynamics/simulate/predict.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -33,11 +34,17 @@ int run_predict(const PredictArguments& a, Shell& shell) {
     }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+    std::vector<std::string> warnings = show_table_warnings(shell, model, data);
     dynamics::PredictOptions options;
     options.horizon = option_value("--horizon", a.horizon, "s");
     const dynamics::Prediction prediction = dynamics::predict(model, data, options, shell.progress());
     shell.show(prediction.remarks);
+    for (const core::Problem& remark : prediction.remarks) {
+        if (remark.severity != core::Problem::Severity::note &&
+            std::find(warnings.begin(), warnings.end(), remark.message) == warnings.end()) {
+            warnings.push_back(remark.message);
+        }
+    }
     shell.hand_over("prediction", [&] { return prediction.table; });
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), prediction.table);

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -299,7 +298,7 @@ TEST(TableCommand, NothingIsPrintedBeforeAnErrorOfALaterPoint) {
     EXPECT_THAT(run.errors, HasSubstr("the table has no axis 'pitch'"));
     const auto both = run_underbody({"table", "at", "lift.csv", "gap=4mm", "gap=5mm"}, folder.path());
     EXPECT_EQ(both.exit_code, 0);
-    EXPECT_EQ(std::count(both.output.begin(), both.output.end(), '\n'), 2);
+    EXPECT_NE(both.output.find("along gap"), both.output.rfind("along gap")) << "two numbers: " << both.output;
 }
 
 TEST(TableCommand, GapsBelowZeroAreToldWithTheirPlace) {
