@@ -16,7 +16,7 @@
 #include "studio/cli/table_analysis.h"
 #include "studio/cli/table_options.h"
 #include "studio/figures/render.h"
-#include "surrogates/dynamics/model/model.h"
+#include "surrogates/dynamics/linear/model_equilibria.h"
 #include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/fit/exact_points.h"
@@ -38,6 +38,7 @@ int run_fit(Shell& shell, const FitCommand& command) {
     const auto all = command.table.fit_all(shell, shell.json);  // as text they stand beside each table
     nlohmann::json document;
     document["tables"] = nlohmann::json::array();
+    std::set<std::string> said;  // notes on the file, once for all its forces
     for (const auto& table : all) {
         nlohmann::json entry = table;
         std::string text =
@@ -54,6 +55,9 @@ int run_fit(Shell& shell, const FitCommand& command) {
             shell.show(warnings, true);
         }
         for (const auto& remark : table.remarks()) {
+            if (!said.insert(remark.message).second) {
+                continue;
+            }
             text += (remark.severity == core::Problem::Severity::note ? "\n  " : "\n  warning: ") + remark.message;
         }
         if (const std::string unstated = tables::unstated_errors(table);
@@ -234,46 +238,102 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
     return text;
 }
 
-/// Net weight and virtual mass of a model where the command does not say them. Returns where the weight is from.
-std::string take_vehicle(Shell& shell, const EquilibriaCommand& command, tables::EquilibriumOptions& options) {
-    const dynamics::Model model = dynamics::read_model(command.table.file).resolved();
-    std::string text;
-    if (command.weight.empty()) {
-        options.net_weight = model.vehicle.net_weight;
-        text = "net weight " + core::format_number(options.net_weight, 6) + " N";
+/// What is drawn as the curve whose zeros the equilibria are.
+struct Balance {
+    tables::Equilibria found;
+    ForceTable table;
+    tables::EquilibriumOptions options;
+    std::vector<double> masses;  ///< kg, at each equilibrium, where they are not one
+};
+
+/// Of a model: the whole vehicle at rest. Says its weight and mass where the command does not.
+Balance balance_of_model(Shell& shell, const EquilibriaCommand& command, const tables::EquilibriumOptions& asked) {
+    dynamics::BalanceOptions options;
+    options.held = command.table.conditions();
+    for (const auto& [name, value] : asked.held) {
+        options.held.set(name, value);
     }
-    if (command.mass.empty() && model.heave_mass() > 0) {
-        options.virtual_mass = model.heave_mass();
-        text += std::string(text.empty() ? "" : ", ") + "virtual mass " + core::format_number(options.virtual_mass, 6) +
-                " kg";
+    if (!command.weight.empty()) {
+        options.net_weight = asked.net_weight;
+    }
+    if (!command.mass.empty()) {
+        options.virtual_mass = asked.virtual_mass;
+    }
+    options.damping = asked.damping;
+    options.scale = asked.scale;
+    options.draws = asked.draws;
+    auto of_model = dynamics::model_equilibria(dynamics::read_model(command.table.file), options, shell.progress());
+    std::string text = command.weight.empty() ? "net weight " + core::told(of_model.net_weight, "N") : "";
+    if (command.mass.empty()) {
+        text += std::string(text.empty() ? "" : ", ") + "virtual mass " +
+                (of_model.one_mass() ? core::told(of_model.found.virtual_mass, "kg") : "by the gap");
     }
     if (!text.empty()) {
         shell.print("of the model: " + text);
     }
-    return command.weight.empty() ? "model" : "given";
+    Balance balance{std::move(of_model.found), std::move(of_model.at_rest), asked, {}};
+    if (!of_model.one_mass()) {
+        balance.masses = std::move(of_model.virtual_mass);
+    }
+    balance.options.net_weight = of_model.net_weight;
+    balance.options.scale = 1;  // the force at rest is scaled already
+    balance.options.held.clear();
+    return balance;
+}
+
+/// What the tables of a model have beside the gap; throws where that is not said, or is no axis.
+void hold_axes(tables::Equilibria& found, const ForceTable& table, const tables::Held& asked) {
+    tables::require_lift(table);
+    const std::size_t gap = tables::axis_index(table, found.axis);
+    const auto point = tables::held_point(table, gap, asked, &found.remarks);
+    for (std::size_t k = 0; k < point.size(); ++k) {
+        if (k != gap) {
+            found.held.emplace_back(table.axes()[k].name, point[k]);
+        }
+    }
+    for (auto& remark : tables::outside_remarks(table, found.held)) {
+        found.remarks.push_back(std::move(remark));
+    }
+}
+
+nlohmann::json equilibria_json(const Balance& balance, const nlohmann::json& of_model) {
+    nlohmann::json document = balance.found;
+    for (std::size_t i = 0; i < balance.masses.size(); ++i) {
+        document["equilibria"][i]["virtual_mass"] = balance.masses[i];
+    }
+    if (!balance.masses.empty()) {
+        document["virtual_mass"] = nullptr;  // not one
+    }
+    for (const auto& [key, value] : of_model.items()) {
+        document[key == "held" ? "model_conditions" : key] = value;  // "held" has the other axes of the table
+    }
+    return document;
 }
 
 int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     tables::EquilibriumOptions options;
     options.held = read_assignments(command.held);
-    const auto table = command.table.fit(shell, command.table.is_model() ? &options.held : nullptr);
-    nlohmann::json of_model = nlohmann::json::object();
-    std::string weight_from = command.weight.empty() ? "default" : "given";
     options.net_weight = command.weight.empty() ? 0 : option_value("--weight", command.weight, "N");
     options.virtual_mass = command.mass.empty() ? 0 : option_value("--mass", command.mass, "kg");
-    command.table.describe(of_model);
-    if (command.table.is_model()) {
-        weight_from = take_vehicle(shell, command, options);
-        of_model["net_weight_from"] = weight_from;
-    }
     options.damping = command.damping.empty() ? 0 : option_value("--damping", command.damping, "N s/m");
     options.scale = command.scale;
     options.draws = command.draws;
-    const auto found = tables::equilibria(table, options);
+    const bool is_model = command.table.is_model();
+    TableOptions of_table = command.table;
+    of_table.at_rest = is_model;
+    tables::Held asked = options.held;
+    const auto table = of_table.fit(shell, is_model ? &asked : nullptr);
+    Balance balance = is_model ? balance_of_model(shell, command, options)
+                               : Balance{tables::equilibria(table, options), table, options, {}};
+    tables::Equilibria& found = balance.found;
+    if (is_model) {
+        hold_axes(found, table, asked);
+    }
     shell.show(found.remarks);
     say_choices(shell, found.remarks);
-    for (const auto& e : found.all) {
-        shell.print(described(table, found, e));
+    for (std::size_t i = 0; i < found.all.size(); ++i) {
+        shell.print(described(table, found, found.all[i]) +
+                    (balance.masses.empty() ? "" : ", virtual mass " + core::told(balance.masses[i], "kg", 4)));
     }
     if (found.all.empty()) {
         shell.print("no equilibrium: the net force is " + core::format_number(found.force_at_lower, 4) + " N at " +
@@ -281,20 +341,18 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
                     core::format_number(found.force_at_upper, 4) + " N at " +
                     shown(table, found.axis, found.axis_unit, found.upper));
     }
-    nlohmann::json document = found;
-    for (const auto& [key, value] : of_model.items()) {
-        if (key == "held") {
-            document["model_conditions"] = value;  // "held" has the other axes of the table
-        } else {
-            document[key] = value;
-        }
+    nlohmann::json of_model = nlohmann::json::object();
+    of_table.describe(of_model);
+    if (is_model) {
+        of_model["net_weight_from"] = command.weight.empty() ? "model" : "given";
     }
+    nlohmann::json document = equilibria_json(balance, of_model);
     if (!command.picture.empty()) {
         tables::FigureOptions figure;
         figure.axis = found.axis;
-        figure.held = found.held;
-        figure.equilibria = options;
-        write_picture(tables::curve_figure(table, figure), command.picture);
+        figure.held = is_model ? tables::Held{} : found.held;
+        figure.equilibria = balance.options;
+        write_picture(tables::curve_figure(balance.table, figure), command.picture);
         document["picture"] = command.picture;
     }
     if (shell.json) {

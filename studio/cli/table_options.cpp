@@ -12,6 +12,7 @@
 #include "studio/cli/caller.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
+#include "surrogates/dynamics/linear/model_equilibria.h"
 #include "surrogates/dynamics/model/force_points.h"
 #include "surrogates/dynamics/model/force_tables.h"
 #include "surrogates/dynamics/model/table_notes.h"
@@ -29,8 +30,8 @@ void TableOptions::add_to(CLI::App& command) {
             "'export' wrote; or a model.toml: its forces as it simulates them, with the effects that change them")
         ->required();
     command.add_option("--quantity", quantity,
-                       "column to use (default: lift_force, or the first force of the table); export, fit, at: "
-                       "several, lift_force,pitch_moment, or all");
+                       "column to use (default: lift_force, or the first force of the table; of fit and at all "
+                       "forces); export, fit, at: several, lift_force,pitch_moment, or all");
     command.add_option("--where", where,
                        "rows to use, such as \"variant=ellipse, mesh=medium, speed=0.5\"; a|b takes either; of a "
                        "model: what is held, such as speed=0.5m/s");
@@ -176,7 +177,7 @@ core::Table TableOptions::points(Shell& shell) const {
     if (!is_model()) {
         return tables::selected_rows(tables::read_points(file), where);
     }
-    auto found = dynamics::force_points(dynamics::read_model(file), held_of(where));
+    auto found = dynamics::force_points(dynamics::read_model(file), conditions());
     shell.show(found.remarks);
     return std::move(found.points);
 }
@@ -191,6 +192,8 @@ const std::vector<tables::ForceTable>* TableOptions::fitted(const Shell& shell) 
     return same ? &known->second : nullptr;
 }
 
+dynamics::Conditions TableOptions::conditions() const { return held_of(where); }
+
 bool TableOptions::is_model() const { return std::filesystem::path(file).extension() == ".toml"; }
 
 std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, bool remarks,
@@ -200,9 +203,10 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
             "kind", "the forces of a model are taken as it simulates them: --kind " + kind + " is for points", {},
             "leave it out, or say 'fit' at the force in the model");
     }
-    const dynamics::Model model = dynamics::read_model(file);
+    const dynamics::Model model =
+        at_rest ? dynamics::with_effects_on_forces(dynamics::read_model(file)) : dynamics::read_model(file);
     dynamics::ForceTablesOptions options;
-    options.held = held_of(where);
+    options.held = conditions();
     options.axes = axes_of(axes);
     const tables::Held given = asked != nullptr ? take_asked(model, *asked, options) : tables::Held{};
     if (dynamics::Channel free{}; dynamics::find_channel(free_axis, free)) {
@@ -235,7 +239,7 @@ std::vector<tables::ForceTable> TableOptions::of_model(Shell& shell, bool one, b
                 core::told_condition(channel_name(one_held.channel), one_held.value) + " (" + one_held.from + ")";
     }
     warnings_ = dynamics::held_outside(model, held);
-    keep(dynamics::held_in_vain(model, held_of(where)), warnings_);
+    keep(dynamics::held_in_vain(model, conditions()), warnings_);
     keep(dynamics::gaps_of_another_size(model), warnings_);
     if (text != said_) {
         said_ = text;

@@ -27,6 +27,7 @@ struct TableOptions {
     std::string range;
     std::string free_axis;   ///< a channel that the caller moves along: the conditions of a model do not hold it
     bool print_held = true;  ///< what a model's forces are held at goes to stdout, above the numbers
+    bool at_rest = false;  ///< of a model the caller takes all that acts at rest: no word of effects beside the forces
 
     /// Adds TABLE.csv, --quantity, --where, --axes, --kind, --range.
     void add_to(CLI::App& command);
@@ -47,6 +48,8 @@ struct TableOptions {
     /// of a command; of a table its `warnings`, `points_exact`: whether its points state no errors and are taken as
     /// exact, and `points_scatter`: what is taken as their error where they state none.
     void describe(nlohmann::json& document) const;
+    /// What a model is held at by --where.
+    [[nodiscard]] dynamics::Conditions conditions() const;
 
 private:
     /// Those that the caller fitted from the file before; nullptr: none.

@@ -72,7 +72,18 @@ void add_constants(core::Table& points, const Model& model, const std::vector<Ch
         }
     }
     add("mass", "kg", model.vehicle.mass);
-    add("added_mass_heave", "kg", model.vehicle.added_mass_heave);
+    if (const auto& over_gap = model.vehicle.added_mass_heave_table) {  // no one number: its range
+        const std::vector<double>& gaps = over_gap->axes()[0].points;
+        std::vector<double> masses;
+        for (const double gap : gaps) {
+            masses.push_back(over_gap->value(&gap));
+        }
+        const auto ends = std::minmax_element(masses.begin(), masses.end());
+        add("added_mass_heave_lowest", "kg", *ends.first);
+        add("added_mass_heave_highest", "kg", *ends.second);
+    } else {
+        add("added_mass_heave", "kg", model.vehicle.added_mass_heave);
+    }
     add("net_weight", "N", model.vehicle.net_weight);
     add("length", "m", model.vehicle.length);
     add("width", "m", model.vehicle.width);

@@ -9,6 +9,7 @@
 #include "surrogates/dynamics/model/force_sources.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
 #include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/plant/resting_gaps.h"
 
 namespace underbody::dynamics {
 
@@ -368,10 +369,8 @@ const HistoryKernel& history_kernel() {
     return kernel;
 }
 
-namespace {
-
-/// The gaps where a body may rest: of the tables, from contact on.
-std::pair<double, double> gap_range(const HeavePlant& plant) {
+/// Gaps where a body may rest: of the tables, from contact on.
+std::pair<double, double> resting_range(const HeavePlant& plant) {
     const Curve& curve = plant.lift_curve();
     double lower =
         std::max(plant.terms.contact_gap, core::is_limit(plant.terms.table_lower) ? plant.terms.table_lower : 0.0);
@@ -385,22 +384,21 @@ std::pair<double, double> gap_range(const HeavePlant& plant) {
     return {lower, upper};
 }
 
-/// Gaps between which lies every sign change of the static force that a table can make.
-std::vector<double> bracketing_gaps(const Curve& curve, double lower, double upper) {
-    std::vector<double> grid;
-    if (!curve.empty()) {
-        for (const double knot : curve.knots()) {
-            grid.push_back(knot);
-        }
+std::vector<double> bracketing_gaps(const HeavePlant& plant) {
+    const auto [lower, upper] = resting_range(plant);
+    constexpr int cells = 2000;
+    std::vector<double> grid = plant.lift_curve().empty() ? std::vector<double>{} : plant.lift_curve().knots();
+    for (int i = 0; i < cells; ++i) {
+        grid.push_back(lower + (upper - lower) * i / cells);
     }
-    for (int i = 0; i <= 2000; ++i) {
-        grid.push_back(lower + (upper - lower) * i / 2000.0);
-    }
+    grid.push_back(upper);
     std::sort(grid.begin(), grid.end());
-    grid.erase(std::remove_if(grid.begin(), grid.end(), [&](double h) { return h < lower || h > upper; }), grid.end());
+    std::erase_if(grid, [low = lower, high = upper](double h) { return h < low || h > high; });
     grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
     return grid;
 }
+
+namespace {
 
 /// `step`: over which slopes are taken; `stable` and `unstable` count the names.
 HeaveEquilibrium equilibrium_at(const HeavePlant& plant, double gap, double step, int& stable, int& unstable) {
@@ -427,8 +425,7 @@ HeaveEquilibrium equilibrium_at(const HeavePlant& plant, double gap, double step
 }  // namespace
 
 std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
-    const std::pair<double, double> range = gap_range(plant);
-    const std::vector<double> grid = bracketing_gaps(plant.lift_curve(), range.first, range.second);
+    const std::vector<double> grid = bracketing_gaps(plant);
     std::vector<HeaveEquilibrium> found;
     int stable = 0, unstable = 0;
     for (std::size_t i = 0; i + 1 < grid.size(); ++i) {
@@ -451,7 +448,7 @@ std::vector<HeaveEquilibrium> heave_equilibria(const HeavePlant& plant) {
             }
             ((plant.static_force(middle) > 0) == (flo > 0) ? lo : hi) = middle;
         }
-        found.push_back(equilibrium_at(plant, (lo + hi) / 2, 1e-6 * (range.second - range.first), stable, unstable));
+        found.push_back(equilibrium_at(plant, (lo + hi) / 2, 1e-6 * (grid.back() - grid.front()), stable, unstable));
     }
     return found;
 }

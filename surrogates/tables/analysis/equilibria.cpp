@@ -8,7 +8,10 @@
 
 #include "core/error.h"
 #include "core/quantile.h"
+#include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
+#include "surrogates/tables/analysis/balances.h"
 #include "surrogates/tables/fit/table_batch.h"
 
 namespace underbody::tables {
@@ -138,9 +141,7 @@ void fill_from_draws(Equilibria& result, const ForceTable& table, std::size_t ax
         for (std::size_t i = 0; i < result.all.size(); ++i) {
             const Equilibrium& e = result.all[i];
             stiffness[i].push_back(stiffness_in(drawn, e));
-            // No nearer than half way to the neighbours counts as the same one.
-            double reach = std::isfinite(e.sigma) ? 4 * e.sigma : result.upper - result.lower;
-            reach = std::max(reach, 1e-9 * (result.upper - result.lower));
+            const double reach = reach_of(result, e);
             hits[i] += std::any_of(found.begin(), found.end(), [&](const Equilibrium& f) {
                 return f.stability == e.stability && std::abs(f.gap - e.gap) <= reach;
             });
@@ -190,25 +191,56 @@ Line net_force(const ForceTable& table, const EquilibriumOptions& options) {
 
 namespace {
 
-/// Error, frequency, damping and kicks of one of the equilibria; `error` is that of the force there.
-void describe(Equilibria& result, std::size_t i, const Line& force, double error, const EquilibriumOptions& options) {
+/// Error, frequency, damping and kicks of one of the equilibria.
+void describe(Equilibria& result, std::size_t i, const Line& force, const AtBalance& at) {
     Equilibrium& e = result.all[i];
-    e.sigma = error == 0                           ? 0
+    e.sigma = at.error == 0                        ? 0
               : e.stability == Stability::marginal ? std::numeric_limits<double>::infinity()
-                                                   : error / std::abs(e.stiffness);
-    const double mass = options.virtual_mass;
-    if (mass > 0 && e.stability == Stability::stable) {
-        e.frequency = std::sqrt(e.stiffness / mass) / (2 * std::numbers::pi);
-        e.damping_ratio = options.damping / (2 * std::sqrt(e.stiffness * mass));
-    } else if (mass > 0 && e.stability == Stability::unstable) {
-        e.growth_rate = std::sqrt(-e.stiffness / mass);
+                                                   : at.error / std::abs(e.stiffness);
+    if (at.mass > 0 && e.stability == Stability::stable) {
+        e.frequency = std::sqrt(e.stiffness / at.mass) / (2 * std::numbers::pi);
+        e.damping_ratio = at.damping / (2 * std::sqrt(e.stiffness * at.mass));
+    } else if (at.mass > 0 && e.stability == Stability::unstable) {
+        e.growth_rate = std::sqrt(-e.stiffness / at.mass);
     }
     if (e.stability == Stability::stable) {
-        fill_kicks(e, force, result.all, i, mass);
+        fill_kicks(e, force, result.all, i, at.mass);
+    }
+}
+
+/// A weight in another unit than newton.
+void remark_on_weight(Equilibria& result, const Line& force) {
+    constexpr double far = 5;  // times what the table can hold up or down
+    const double largest = force.scaled(1, result.net_weight).size();
+    if (result.all.empty() && std::abs(result.net_weight) > far * largest) {
+        result.remarks.push_back({core::Problem::Severity::warning,
+                                  "a net weight of " + core::told(result.net_weight, "N") + " is " +
+                                      core::format_number(std::abs(result.net_weight) / largest, 3) +
+                                      " times the largest force, " + core::told(largest, "N") +
+                                      ": nothing balances it (is it in N?)",
+                                  {result.source, {}, {}, {}}});
     }
 }
 
 }  // namespace
+
+void set_balances(Equilibria& result, const Line& force, const std::function<AtBalance(double gap)>& at) {
+    result.lower = force.lower();
+    result.upper = force.upper();
+    result.force_at_lower = force.value(force.lower());
+    result.force_at_upper = force.value(force.upper());
+    result.all = find(force);
+    result.extremes = force.extremes();
+    remark_on_weight(result, force);
+    for (std::size_t i = 0; i < result.all.size(); ++i) {
+        describe(result, i, force, at(result.all[i].gap));
+    }
+}
+
+double reach_of(const Equilibria& all, const Equilibrium& one) {
+    const double range = all.upper - all.lower;
+    return std::max(std::isfinite(one.sigma) ? 4 * one.sigma : range, 1e-9 * range);
+}
 
 Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options) {
     if (!(options.virtual_mass >= 0) || !(options.damping >= 0) || !std::isfinite(options.net_weight) ||
@@ -235,16 +267,10 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
     }
     result.quantity = table.quantity();
     result.source = table.source();
-    result.lower = force.lower();
-    result.upper = force.upper();
-    result.force_at_lower = force.value(force.lower());
-    result.force_at_upper = force.value(force.upper());
-    result.all = find(force);
-    result.extremes = force.extremes();
-    for (std::size_t i = 0; i < result.all.size(); ++i) {
-        point[axis] = result.all[i].gap;
-        describe(result, i, force, std::abs(options.scale) * table.sigma(point.data()), options);
-    }
+    set_balances(result, force, [&](double gap) {
+        point[axis] = gap;
+        return AtBalance{std::abs(options.scale) * table.sigma(point.data()), options.virtual_mass, options.damping};
+    });
     if (options.draws > 0) {
         fill_from_draws(result, table, axis, point, options);
     }

@@ -41,6 +41,7 @@ std::optional<std::string> better_heading(const core::Table& table, const core::
 
 core::Problems unused_columns(const core::Table& table, const std::string& quantity) {
     core::Problems found;
+    std::string no_set_points;
     for (const core::Column& column : table.columns()) {
         const bool text = column.is_text();
         const bool known = column.name == quantity || core::find_quantity(column.name) != nullptr ||
@@ -54,9 +55,13 @@ core::Problems unused_columns(const core::Table& table, const std::string& quant
                              "the column '" + column.name + "' is not understood and not used: write " + *better,
                              place});
         } else if (!text && varies(column) && !column.name.ends_with("_sigma")) {
-            found.push_back({core::Problem::Severity::note,
-                             "the column '" + column.name + "' is not a set point and not used", place});
+            no_set_points += (no_set_points.empty() ? "" : ", ") + column.name;
         }
+    }
+    if (!no_set_points.empty()) {
+        found.push_back({core::Problem::Severity::note,
+                         "columns that are no set points and not used: " + no_set_points,
+                         {table.source, {}, {}, {}}});
     }
     return found;
 }
