@@ -55,8 +55,11 @@ tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
 std::string compute_table(const TableSpec& spec, const core::Table& points, const tables::ForceTable& table,
                           const std::vector<std::string>& mixed) {
     nlohmann::json document;
+    core::Problems of_equilibria;
     if (spec.net_weight) {
-        tables::to_json(document, tables::equilibria(table, equilibrium_options(spec)));
+        const tables::Equilibria found = tables::equilibria(table, equilibrium_options(spec));
+        tables::to_json(document, found);
+        of_equilibria = found.remarks;
     }
     document["quantity"] = spec.quantity;
     document["kind"] = table.kind();
@@ -65,6 +68,11 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
         {"Fitted by " + table.kind() + " through " + core::counted(points.rows(), "point") + "."});
     for (const auto& remark : mixed) {
         document["remarks"].push_back(remark);
+    }
+    for (const auto& remark : of_equilibria) {
+        if (remark.severity != core::Problem::Severity::note) {
+            document["remarks"].push_back(remark.message);
+        }
     }
     bool says_exact = false;
     for (const auto& remark : table.remarks()) {

@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "core/table.h"
 #include "core/text.h"
+#include "core/told.h"
 #include "core/units.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/force_notes.h"
@@ -185,6 +186,12 @@ void check(const ControlArguments& a, const SeparatedPlant& plant, const Control
                   " mN cannot hold this gap: the balance there needs " + core::format_number(1e3 * needed, 4) + " mN",
               {}}});
     }
+    if (const double fastest = std::max(std::abs(a.pole1), std::abs(a.pole2)); o.step * fastest > 0.5) {
+        shell.show_warning("a sample time of " + core::told(o.step, "s") +
+                           " is long beside the loop, whose fastest pole "
+                           "decays within " +
+                           core::told(1 / fastest, "s"));
+    }
     const auto& known = loop_estimators();
     if (std::find(known.begin(), known.end(), a.observer) == known.end()) {
         throw core::UsageError("name", "--observer does not know '" + a.observer + "'", {},
@@ -275,6 +282,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
     }
     const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
     const LoopRun loop = close_loop(plant, law, estimator, o);
+    if (loop.touched || !loop.finite) {
+        shell.show_warning(loop.touched ? "the vehicle touched the ground: the loop does not hold this gap"
+                                        : "the loop does not hold this gap: the motion runs away");
+    }
     shell.hand_over("motion", [&] { return loop.table(); });
     write_files(a, loop, plant, law, estimator, o);
     nlohmann::json json = json_of(loop, plant, law, a, warnings);

@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/cli/shell.h"
 #include "surrogates/dynamics/plant/environment.h"
 
 namespace underbody::studio {
@@ -38,13 +39,14 @@ const char* lqr_help() {
            "pitch_reference and weights pitch=10,pitch_rate=0.1,moment=100; limit, moment_limit";
 }
 
-std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(const std::string& feedback, const std::string& lqr,
-                                                           const dynamics::Model& model,
+std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(Shell& shell, const std::string& feedback,
+                                                           const std::string& lqr, const dynamics::Model& model,
                                                            const dynamics::Conditions& held) {
     refuse_both(feedback, lqr);
     if (feedback.empty() && lqr.empty()) {
         return nullptr;
     }
+    const dynamics::HeavePlant plant(model, held);
     dynamics::HeaveFeedback gains;
     if (!feedback.empty()) {
         gains = dynamics::heave_feedback(feedback);
@@ -59,23 +61,26 @@ std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(const std::string& fe
             throw core::UsageError("missing", "--lqr needs the gap to hold: reference=20mm");
         }
         check_weights({gap, velocity, force});
-        gains = dynamics::heave_lqr(dynamics::HeavePlant(model, held), reference, velocity, gap, force);
+        gains = dynamics::heave_lqr(plant, reference, velocity, gap, force);
         gains.limit = limit;
     }
     if (gains.limit < 0) {
         throw core::UsageError("range", "a limit is not negative");
     }
+    shell.show(dynamics::loop_remarks(plant, gains, !lqr.empty()));
     return std::make_shared<dynamics::HeaveFeedback>(gains);
 }
 
-std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feedback, const std::string& lqr,
-                                                         const dynamics::HeavePitch& plant) {
+std::optional<dynamics::PitchFeedback> pitch_feedback_of(Shell& shell, const std::string& feedback,
+                                                         const std::string& lqr, const dynamics::HeavePitch& plant) {
     refuse_both(feedback, lqr);
     if (feedback.empty() && lqr.empty()) {
         return std::nullopt;
     }
     if (!feedback.empty()) {
-        return dynamics::pitch_feedback(feedback);
+        const dynamics::PitchFeedback given = dynamics::pitch_feedback(feedback);
+        shell.show(dynamics::loop_remarks(plant, given, false));
+        return given;
     }
     dynamics::PitchWeights weights;
     double reference = std::nan(""), pitch = 0, limit = 0, moment_limit = 0;
@@ -97,6 +102,7 @@ std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feed
     dynamics::PitchFeedback gains = dynamics::pitch_lqr(plant, reference, pitch, weights);
     gains.force_limit = limit;
     gains.moment_limit = moment_limit;
+    shell.show(dynamics::loop_remarks(plant, gains, true));
     return gains;
 }
 

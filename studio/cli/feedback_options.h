@@ -13,12 +13,15 @@ namespace underbody::studio {
 const char* feedback_help();
 const char* lqr_help();
 
-/// From --feedback or --lqr; nullptr when neither was given. `held` as for the plant.
-std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(const std::string& feedback, const std::string& lqr,
-                                                           const dynamics::Model& model,
+class Shell;
+
+/// From --feedback or --lqr; nullptr when neither was given. `held` as for the plant. What is to be said of the loop
+/// goes to the shell.
+std::shared_ptr<dynamics::HeaveFeedback> heave_feedback_of(Shell& shell, const std::string& feedback,
+                                                           const std::string& lqr, const dynamics::Model& model,
                                                            const dynamics::Conditions& held);
-std::optional<dynamics::PitchFeedback> pitch_feedback_of(const std::string& feedback, const std::string& lqr,
-                                                         const dynamics::HeavePitch& plant);
+std::optional<dynamics::PitchFeedback> pitch_feedback_of(Shell& shell, const std::string& feedback,
+                                                         const std::string& lqr, const dynamics::HeavePitch& plant);
 dynamics::VehicleHold hold_of(const std::string& text);
 
 /// Remarks on a model that its motion should come with.

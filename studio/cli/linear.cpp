@@ -200,7 +200,7 @@ core::Problems trim_outside(const dynamics::Model& model, dynamics::Conditions h
 }
 
 void heave(const dynamics::Model& model, const dynamics::Conditions& held, const std::vector<double>& q,
-           const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
+           const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text, Shell& shell) {
     const char* pitch_held = pitches(model) ? ", pitch held at 0" : "";
     const dynamics::HeavePlant plant(model, held);
     const bool outside = !trim_outside(model, held, at).empty();
@@ -214,6 +214,7 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
         const dynamics::TrimError error = dynamics::heave_trim_error(model, held, e.gap, !at);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave"});
         const dynamics::HeaveFeedback gains = dynamics::heave_lqr(plant, e.gap, q[0], q[1], q[2]);
+        shell.show(dynamics::loop_remarks(plant, gains, true));
         nlohmann::json one = system_json(system, modes, error);
         const double trim_force = plant.static_force(e.gap);
         one["name"] = e.name;
@@ -501,7 +502,7 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     nlohmann::json json;
     std::string text;
     add_sweep(a, model, held, json);
-    heave(model, held, weights, at, json, text);
+    heave(model, held, weights, at, json, text, shell);
     text += text.empty() ? "" : free_in_pitch(model, held, json);
     const dynamics::Vehicle& v = model.vehicle;
     if (pitches(model)) {

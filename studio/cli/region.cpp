@@ -51,7 +51,8 @@ struct RegionArguments {
 };
 
 /// Feedback in the motion that the map is of.
-void close_loop(const RegionArguments& a, const dynamics::Model& model, dynamics::RegionOptions& options) {
+void close_loop(const RegionArguments& a, const dynamics::Model& model, dynamics::RegionOptions& options,
+                Shell& shell) {
     if (a.feedback.empty() && a.lqr.empty()) {
         return;
     }
@@ -62,13 +63,13 @@ void close_loop(const RegionArguments& a, const dynamics::Model& model, dynamics
     if (options.motion == Motion::heave_pitch || (options.motion == Motion::automatic && pitch_axis)) {
         const dynamics::HeavePitch plant(model, options.held);
         options.pitch_feedback =
-            std::make_shared<dynamics::PitchFeedback>(*pitch_feedback_of(a.feedback, a.lqr, plant));
+            std::make_shared<dynamics::PitchFeedback>(*pitch_feedback_of(shell, a.feedback, a.lqr, plant));
     } else {
-        options.feedback = heave_feedback_of(a.feedback, a.lqr, model, options.held);
+        options.feedback = heave_feedback_of(shell, a.feedback, a.lqr, model, options.held);
     }
 }
 
-dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Model& model) {
+dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Model& model, Shell& shell) {
     dynamics::RegionOptions options;
     // Given starts have no range of their own: they escape at the end of the tables, or above the highest start.
     if (!a.axes.empty() || a.starts.empty()) {
@@ -92,7 +93,7 @@ dynamics::RegionOptions options_of(const RegionArguments& a, const dynamics::Mod
         using Motion = dynamics::RegionOptions::Motion;
         options.motion = a.motion == "heave" ? Motion::heave : Motion::heave_pitch;
     }
-    close_loop(a, model, options);
+    close_loop(a, model, options, shell);
     if (!a.escape.empty()) {
         options.escape_gap = option_value("--escape", a.escape, "m");
     }
@@ -229,7 +230,7 @@ int run_variants(const RegionArguments& a, const dynamics::Model& model, const d
     for (const std::string& variant : a.variants) {
         const dynamics::Model other = dynamics::read_model(variant);
         dynamics::RegionOptions own = options;
-        close_loop(a, other, own);  // gains that --lqr finds are those of this model
+        close_loop(a, other, own, shell);  // gains that --lqr finds are those of this model
         regions.push_back(dynamics::stability_region(other, own, shell.progress()));
         names.push_back(variant);
     }
@@ -338,7 +339,7 @@ int run_region(const RegionArguments& a, Shell& shell) {
         Shell::will_write(file);
     }
     const dynamics::Model model = model_with(a.model, a.set);
-    const dynamics::RegionOptions options = options_of(a, model);
+    const dynamics::RegionOptions options = options_of(a, model, shell);
     if (!a.lqr.empty() || shell.json) {  // the document states the damping of equilibria
         shell.show(dynamics::HeavePlant(model, options.held).left_out_of_small_motions());
     }

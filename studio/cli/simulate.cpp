@@ -258,7 +258,7 @@ void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
     show_what_gains_leave_out(a, job, shell);
     const dynamics::Trajectory motion = dynamics::simulate(
         job.model, job.start.needed_gap(), job.start.heave_velocity.value_or(0), job.inputs.signals, job.options,
-        shell.progress(), heave_feedback_of(a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
+        shell.progress(), heave_feedback_of(shell, a.feedback, a.lqr, job.model, job.inputs.signals.held).get());
     shell.show(motion.remarks);
     const dynamics::HeavePlant plant = dynamics::plant_for(job.model, job.inputs.signals);
     write_motion(motion, dynamics::trajectory_figure(motion, dynamics::heave_equilibria(plant)), a, job, shell);
@@ -270,7 +270,7 @@ void run_heave(const SimulateArguments& a, Job& job, Shell& shell) {
 void run_heave_pitch(const SimulateArguments& a, Job& job, Shell& shell) {
     show_what_gains_leave_out(a, job, shell);
     dynamics::HeavePitch plant(job.model, job.inputs.signals.held, dynamics::varying_channels(job.inputs.signals));
-    if (const auto feedback = pitch_feedback_of(a.feedback, a.lqr, plant)) {
+    if (const auto feedback = pitch_feedback_of(shell, a.feedback, a.lqr, plant)) {
         plant.close_loop(*feedback);
     }
     const dynamics::PitchState start = job.start.of_pitch();

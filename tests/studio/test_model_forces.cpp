@@ -60,10 +60,98 @@ TEST_F(ModelForces, TableAndLinearStateOneErrorOfAStiffness) {
     for (std::size_t i = 0; i < of_table.size(); ++i) {
         const double k = of_linear[i]["stiffness"];
         EXPECT_NEAR(of_table[i]["stiffness"].get<double>(), k, 0.01 * std::abs(k));
-        // Both are spreads of some hundred draws: each known to about 7 %.
         EXPECT_NEAR(of_table[i]["stiffness_sigma"].get<double>(), of_linear[i]["stiffness_sigma"].get<double>(),
-                    0.3 * of_linear[i]["stiffness_sigma"].get<double>());
+                    1e-6 * of_linear[i]["stiffness_sigma"].get<double>());  // the same draws
     }
+}
+
+TEST_F(ModelForces, EquilibriaOfAModelAreThoseOfItsLinearAnalysis) {
+    core::write_file(folder_.path() / "mass.csv",
+                     "gap [mm], added_mass_heave [kg]\n1, 3.2\n5, 2.5\n20, 1.9\n50, 1.75\n");
+    const std::string held = "[conditions]\nspeed = \"0.5 m/s\"\n";
+    const auto effect = [](const std::string& text) { return "[[effect]]\nname = " + text + "\n"; };
+    model("trim.toml", held + effect("\"constant_force\"\nforce = { value = \"1 mN\", sigma = \"0.1 mN\" }"));
+    model("heavy.toml", held + effect("\"added_mass\"\nmass = \"0.9 kg\""));
+    model("rough.toml", held + effect("\"surface_roughness\"\nnear = 0.2\nfar = 0.1\nlength = \"5 mm\""));
+    model("tied.toml", held + effect("\"tether_stiffness\"\nstiffness = \"0.05 N/m\"\ngap = \"20 mm\""));
+    model("table.toml", held);
+    std::string text = core::read_file(folder_.path() / "table.toml");
+    text.replace(text.find("\"1.754 kg\""), 10, "\"mass.csv\"");
+    core::write_file(folder_.path() / "table.toml", text);
+    for (const char* file : {"model.toml", "trim.toml", "heavy.toml", "rough.toml", "tied.toml", "table.toml"}) {
+        const nlohmann::json of_model = json({"table", "equilibria", file}), table = of_model["equilibria"],
+                             linear = json({"linear", file})["heave"];
+        ASSERT_EQ(table.size(), linear.size()) << file;
+        const auto near = [&](const nlohmann::json& a, const nlohmann::json& b, double part) {
+            EXPECT_NEAR(a.get<double>(), b.get<double>(), part * std::abs(b.get<double>())) << file;
+        };
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            near(table[i]["gap"], linear[i]["gap"], 1e-8);
+            near(table[i]["sigma"], linear[i]["sigma"], 1e-6);
+            near(table[i]["stiffness"], linear[i]["stiffness"], 1e-4);
+            near(table[i]["stiffness_sigma"], linear[i]["stiffness_sigma"], 1e-6);
+            near(table[i].value("virtual_mass", of_model["virtual_mass"]), linear[i]["virtual_mass"], 1e-9);
+            const nlohmann::json& mode = linear[i]["modes"][0];
+            if (mode["imaginary"].get<double>() > 0) {
+                near(table[i]["angular_frequency"], mode["frequency"], 1e-4);
+                if (mode["frequency_sigma"].is_number()) {
+                    near(table[i]["frequency_sigma"], mode["frequency_sigma"].get<double>() / (2 * 3.141592653589793),
+                         0.05);
+                }
+            }
+        }
+    }
+    const auto of_table = run_underbody({"table", "equilibria", "table.toml"}, folder_.path());
+    EXPECT_THAT(of_table.output, HasSubstr("virtual mass by the gap"));
+    run_underbody({"export", "table.toml", "--out", "table.h"}, folder_.path());
+    EXPECT_THAT(
+        core::read_file(folder_.path() / "table.h"),
+        testing::AllOf(HasSubstr("added_mass_heave_lowest = 1.75"), HasSubstr("added_mass_heave_highest = 3.2")));
+}
+
+TEST_F(ModelForces, GainsKnowTheActuatorOrSayThatTheyDoNot) {
+    const std::string held = "[conditions]\nspeed = \"0.5 m/s\"\n";
+    const auto effect = [](const std::string& text) { return "[[effect]]\nname = " + text + "\n"; };
+    model("gain.toml", held + effect("\"input_gain\"\ngain = 0.2"));
+    model("late.toml", held + effect("\"input_delay\"\ndelay = \"3 s\""));
+    model("slow.toml", held + effect("\"actuator_lag\"\ntime_constant = \"0.2 s\""));
+    const nlohmann::json plain = json({"linear", "model.toml"}), gain = json({"linear", "gain.toml"});
+    EXPECT_GT(gain["heave"][0]["lqr"]["velocity_gain"].get<double>(),
+              1.5 * plain["heave"][0]["lqr"]["velocity_gain"].get<double>());
+    EXPECT_EQ(gain["warnings"].dump().find("actuator"), std::string::npos) << gain["warnings"];
+    EXPECT_THAT(json({"linear", "late.toml"})["warnings"].dump(),
+                HasSubstr("designed without the actuator's delay of 3 s; with it the loop is unstable"));
+    EXPECT_THAT(json({"linear", "slow.toml"})["warnings"].dump(),
+                HasSubstr("designed without the actuator's lag of 0.2 s; with it the loop is stable"));
+    for (const std::string command : {"simulate", "region"}) {
+        std::vector<std::string> words{command, "late.toml", "--lqr", "reference=20mm"};
+        for (const std::string& word : command == "simulate"
+                                           ? std::vector<std::string>{"--from", "gap=21mm", "--for", "5"}
+                                           : std::vector<std::string>{"--grid", "4x4", "--for", "5"}) {
+            words.push_back(word);
+        }
+        EXPECT_THAT(run_underbody(words, folder_.path()).output + run_underbody(words, folder_.path()).errors,
+                    HasSubstr("with it the loop is unstable about 20 mm"))
+            << command;
+    }
+}
+
+TEST_F(ModelForces, SetPointsThatCannotBeMeantAreTold) {
+    const auto told = [&](const std::vector<std::string>& words) {
+        const auto run = run_underbody(words, folder_.path());
+        return run.output + run.errors;
+    };
+    EXPECT_THAT(told({"simulate", "model.toml", "--from", "gap=20mm", "--for", "2", "--feedback",
+                      "gap_gain=10,velocity_gain=9,reference=20"}),
+                HasSubstr("reference 20000 mm lies outside the force tables, 1 to 50 mm: 20 mm would fit"));
+    EXPECT_THAT(told({"simulate", "model.toml", "--from", "gap=20mm", "--for", "2", "--feedback",
+                      "gap_gain=-10,velocity_gain=9,reference=20mm"}),
+                HasSubstr("gap_gain -10 N/m is negative as it reaches the body: it drives away from the reference"));
+    EXPECT_THAT(told({"control", "model.toml", "--hold", "20mm", "--from", "gap=25mm", "--step", "20"}),
+                HasSubstr("a sample time of 20 s is long beside the loop"));
+    EXPECT_THAT(told({"table", "at", "model.toml", "gap=5 Mm"}), HasSubstr("with m (milli) for M (mega)"));
+    EXPECT_THAT(told({"table", "equilibria", "lift.csv", "--held", "speed=0.5", "--weight", "300"}),
+                HasSubstr("a net weight of 300 N is "));
 }
 
 TEST_F(ModelForces, AStiffnessOutsideTheTablesIsSaidToBeThatOfTheirEnds) {

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/dynamics/linear/trim_error.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
@@ -77,21 +78,36 @@ PitchFeedback pitch_feedback(const std::string& gains) {
     return feedback;
 }
 
+namespace {
+
+/// N of the force at rest per N that is commanded.
+double passed_on(const HeaveTerms& terms, double gap) { return terms.actuator.gain * (1 - terms.thrust_lost(gap)); }
+
+/// Small motions with the force as it is commanded, before the actuator.
+LinearSystem commanded(const HeavePitch& plant, double gap, double pitch) {
+    LinearSystem system = plant.linearised(gap, pitch);
+    for (std::size_t i = 0; i < system.b.rows(); ++i) {
+        system.b(i, 0) *= passed_on(plant.vertical().terms, gap);
+    }
+    return system;
+}
+
+}  // namespace
+
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
                         double input_weight) {
-    double slope = 0;
-    const double mass = plant.inertia(gap, slope);
-    const double step = 1e-6;
-    const double stiffness = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
-    LinearSystem system;
-    system.a = Matrix{{-plant.damping(gap) / mass, -stiffness / mass}, {1, 0}};
-    system.b = Matrix{{1 / mass}, {0}};
+    LinearSystem system = heave_system(plant, gap);
+    const double passed = passed_on(plant.terms, gap);
+    if (passed == 0) {
+        return {0, 0, gap, 0};
+    }
+    system.b(0, 0) *= passed;
     const Regulator k = lqr(system, Matrix::diagonal({velocity_weight, gap_weight}), Matrix::diagonal({input_weight}));
     return {k.gain(0, 1), k.gain(0, 0), gap, 0};
 }
 
 PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights) {
-    const LinearSystem system = plant.linearised(gap, pitch);
+    const LinearSystem system = commanded(plant, gap, pitch);
     const Regulator regulator = lqr(system, Matrix::diagonal({weights.state.begin(), weights.state.end()}),
                                     Matrix::diagonal({weights.force, weights.moment}));
     PitchFeedback feedback;
@@ -104,17 +120,13 @@ PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const
 }
 
 std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback) {
-    const LinearSystem system = plant.linearised(feedback.reference[0], feedback.reference[2]);
+    const LinearSystem system = commanded(plant, feedback.reference[0], feedback.reference[2]);
     Matrix gain(2, 4);
     for (std::size_t i = 0; i < 4; ++i) {
         gain(0, i) = feedback.force_gain[i];
         gain(1, i) = feedback.moment_gain[i];
     }
-    std::vector<std::complex<double>> poles;
-    for (const EigenPair& one : eigen(system.a - system.b * gain)) {
-        poles.push_back(one.value);
-    }
-    return poles;
+    return eigenvalues(system.a - system.b * gain);
 }
 
 EquilibriumSweep equilibrium_sweep(const Model& model, const Conditions& held, Channel channel, double lower,

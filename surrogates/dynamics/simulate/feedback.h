@@ -33,7 +33,8 @@ HeaveFeedback heave_feedback(const std::string& gains);
 PitchFeedback pitch_feedback(const std::string& gains);
 
 /// LQR gains of heave at a gap: states (heave_velocity, gap), weights q = (q_w, q_h), r, on M dw/dt = -k (h - h0) - d w
-/// + u.
+/// + g u with the gain g of the actuator that the model declares (input_gain, thrust_by_gap) there; 0 where nothing of
+/// the input reaches the body. Its delay, lag and dead zone are not known to the gains: loop_remarks().
 HeaveFeedback heave_lqr(const HeavePlant& plant, double gap, double velocity_weight, double gap_weight,
                         double input_weight);
 
@@ -43,10 +44,20 @@ struct PitchWeights {
     std::array<double, 4> state{100, 1, 10, 0.1};
     double force = 1, moment = 100;
 };
-/// LQR about a gap and a pitch, both inputs. Throws core::Error (kind "control") when there is none.
+/// LQR about a gap and a pitch, both inputs, the force as the actuator's gain passes it on. Throws core::Error (kind
+/// "control") when there is none.
 PitchFeedback pitch_lqr(const HeavePitch& plant, double gap, double pitch, const PitchWeights& weights);
-/// Poles of the loop closed, about the reference.
+/// Poles of the loop closed, about the reference, without the actuator's delay and lag.
 std::vector<std::complex<double>> closed_poles(const HeavePitch& plant, const PitchFeedback& feedback);
+
+/// Rightmost pole of dx/dt = a x - b f, where f is k x after a delay (s) and a first-order lag (s): what decides
+/// whether a loop is stable. By collocation over the delay (Breda, Maset and Vermiglio 2005).
+std::complex<double> rightmost_pole(const Matrix& a, const Matrix& b, const Matrix& k, double delay, double lag);
+
+/// Warnings on a loop: a reference outside the force tables or in the ground, gains that drive away from it, and what
+/// delay, lag and dead zone of the declared actuator make of gains that do not know them (`designed`: by LQR).
+core::Problems loop_remarks(const HeavePlant& plant, const HeaveFeedback& feedback, bool designed);
+core::Problems loop_remarks(const HeavePitch& plant, const PitchFeedback& feedback, bool designed);
 
 /// Equilibria for a range of one condition (jet_voltage, speed, ...).
 struct EquilibriumSweep {

@@ -231,6 +231,7 @@ void Flight::begin_piece(double& t, std::vector<double>& y, core::Progress& prog
 
 bool Flight::after(const Ode::Stop& stop, double t, std::vector<double>& y) {
     const bool ends = stop.which[escape] != 0 || stop.which[settle] != 0;
+    y[0] = ends ? y[0] : plant_.terms.contact_gap;  // the search for it stops within rounding
     if (ends || options_.stop_at_contact || options_.output_step == 0) {
         record(t, y.data());  // rows at a fixed step stay at that step; the event itself is among the events
     }
@@ -240,7 +241,6 @@ bool Flight::after(const Ode::Stop& stop, double t, std::vector<double>& y) {
         out_.end = kind;
         return false;
     }
-    y[0] = plant_.terms.contact_gap;
     y[1] = -plant_.terms.restitution * y[1];
     on_ground_ = y[1] < slowest_bounce;
     y[1] = on_ground_ ? 0 : y[1];

@@ -24,6 +24,7 @@ double beyond_points(const ForceTable& table, const double* point) {
 
 /// A number without its unit is off by 57 (degrees) or 1,000 (mm); one beyond the axis by less was meant as it stands.
 constexpr double far_outside = 5;
+constexpr double mega_for_milli = 1e-9;
 
 core::Problems outside_remarks(const ForceTable& table, const Held& held) {
     core::Problems remarks;
@@ -44,6 +45,8 @@ core::Problems outside_remarks(const ForceTable& table, const Held& held) {
         if (far && meant >= axis->lower && meant <= axis->upper) {
             text += "; it is " + core::format_number(value, 6) + " " + axis->unit + " (a bare number is SI), and " +
                     core::format_number(value, 6) + " " + unit + " would lie inside";
+        } else if (far && value * mega_for_milli >= axis->lower && value * mega_for_milli <= axis->upper) {
+            text += "; with m (milli) for M (mega) it would lie inside";
         }
         remarks.push_back({core::Problem::Severity::warning, text, {table.source(), {}, {}, {}}});
     }

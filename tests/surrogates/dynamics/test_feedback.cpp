@@ -66,6 +66,33 @@ TEST(Feedback, CoulombFrictionIsNoDampingOfSmallMotions) {
     EXPECT_GT(rubbing.resistance(0.05, 1e-5), plain.resistance(0.05, 1e-5));
 }
 
+TEST(Feedback, PolesOfLoopsWithDelayAndLag) {
+    // x' = -x(t - pi/2): s + exp(-s pi/2) = 0 has +- i; with a lag of 1 s and no delay s^2 + s + 1.
+    const Matrix none{{0}}, one{{1}};
+    EXPECT_NEAR(rightmost_pole(none, one, one, std::acos(-1.) / 2, 0).real(), 0, 1e-9);
+    EXPECT_NEAR(std::abs(rightmost_pole(none, one, one, std::acos(-1.) / 2, 0).imag()), 1, 1e-9);
+    EXPECT_NEAR(rightmost_pole(none, one, one, 0, 1).real(), -0.5, 1e-12);
+    EXPECT_NEAR(rightmost_pole(none, one, one, 1 / std::exp(1.), 0).real(), -std::exp(1.), 1e-3)
+        << "a double pole at -e";
+    const std::complex<double> both = rightmost_pole(none, one, one, 1, 0.5);  // s (1 + s/2) + exp(-s) = 0
+    EXPECT_LT(std::abs(both * (1. + both / 2.) + std::exp(-both)), 1e-9);
+}
+
+TEST(Feedback, LqrIsForTheDeclaredActuator) {
+    // M h'' = g u: k_h = sqrt(q_h), k_w = sqrt(q_w + 2 M k_h/g)
+    const Model weak = test::free_model(4, 0, 0, 0).with_effect(make_use("input_gain", {{"gain", 0.2}}));
+    const HeavePlant plant(weak);
+    const HeaveFeedback gains = heave_lqr(plant, 1, 1, 100, 1);
+    EXPECT_NEAR(gains.gap_gain, 10, 1e-6);
+    EXPECT_NEAR(gains.velocity_gain, std::sqrt(1 + 2 * 4 * 10 / 0.2), 1e-6);
+    EXPECT_TRUE(loop_remarks(plant, gains, true).empty());
+    const HeavePlant dead(test::free_model(4, 0, 0, 0).with_effect(make_use("input_dead_zone", {{"width", 0.002}})));
+    const core::Problems remarks = loop_remarks(dead, heave_lqr(dead, 1, 1, 100, 1), true);
+    ASSERT_EQ(remarks.size(), 1U);
+    EXPECT_NE(remarks[0].message.find("dead zone of 0.002 N"), std::string::npos) << remarks[0].message;
+    EXPECT_NE(remarks[0].message.find("0.2 mm off the reference"), std::string::npos) << remarks[0].message;
+}
+
 TEST(Feedback, SweepsTheVoltage) {
     Model model = test::ref_a_model(0, 15, .005);
     model.forces[0].scales = {{Channel::jet_voltage, 10, 2, 0}};
