@@ -21,4 +21,13 @@ inline std::string percent_of(double share, const std::string& whole, int digits
     return is_rounding(share) ? "less than rounding" : percent(share, digits) + " of " + whole;
 }
 
+/// A warning where a share was given as a bare number so large that per cent were meant; empty where not. `what`: "the
+/// option or key and its number"; `largest`: what a share may be without a question.
+inline std::string percent_sign_missing(const std::string& what, double share, double largest,
+                                        const std::string& whole) {
+    return share > largest ? what + " is " + percent(share) + " of " + whole + ": \"" + core::format_number(share) +
+                                 " %\" is with the sign"
+                           : std::string();
+}
+
 }  // namespace underbody::cases

@@ -8,6 +8,7 @@
 
 #include "cases/case_names.h"
 #include "cases/design_points.h"
+#include "cases/percent.h"
 #include "cases/study_format.h"
 #include "cases/sweep.h"
 #include "cases/sweep_slurm.h"
@@ -239,7 +240,21 @@ MeshSpec read_mesh(const TomlTable& table, std::set<std::string>& taken) {
     return mesh;
 }
 
-TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const Study& study) {
+/// A share that may be per cent without their sign.
+double read_share(const TomlTable& table, const char* key, double fallback, double largest, const std::string& whole,
+                  core::Problems& notes) {
+    const double share = table.quantity_or(key, "1", fallback);
+    const std::string text =
+        table.is_number(key)
+            ? percent_sign_missing(table.path_of(key) + " = " + core::format_number(share), share, largest, whole)
+            : std::string();
+    if (!text.empty()) {
+        notes.push_back({core::Problem::Severity::warning, text, table.place(key)});
+    }
+    return share;
+}
+
+TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, Study& study) {
     TableSpec spec;
     spec.name = unique_name(table, taken);
     std::vector<std::string> quantities;
@@ -263,7 +278,7 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, const
                                core::did_you_mean(spec.fit, tables::fit_kinds()));
     }
     spec.speed_exponent = table.quantity_or("speed_exponent", "1", spec.speed_exponent);
-    spec.relative_sigma = table.quantity_or("relative_sigma", "1", 0);
+    spec.relative_sigma = read_share(table, "relative_sigma", 0, 0.5, "each value", study.notes);
     spec.mesh_uncertainty = table.string_or("mesh_uncertainty", "");
     spec.net_weight = table.find_quantity("net_weight", "N");
     spec.virtual_mass = table.quantity_or("virtual_mass", "kg", 0);
@@ -490,13 +505,13 @@ RegionSpec read_region(const TomlTable& table, std::set<std::string>& taken, con
     return spec;
 }
 
-VerifySpec read_verification(const TomlTable& table, std::set<std::string>& taken) {
+VerifySpec read_verification(const TomlTable& table, std::set<std::string>& taken, core::Problems& notes) {
     VerifySpec spec;
     spec.name = unique_name(table, taken);
     spec.table = table.file("table");
     spec.where = read_where(table, "where");
     spec.quantities = required_strings(table, "quantities");
-    spec.tolerance = table.quantity_or("tolerance", "1", 0.01);
+    spec.tolerance = read_share(table, "tolerance", 0.01, 0.1, "the force", notes);
     if (!(spec.tolerance > 0)) {
         throw core::InputError("range",
                                table.path_of("tolerance") + " = " + core::format_number(spec.tolerance, 4) +
@@ -537,7 +552,7 @@ void read_steps(Study& study, const TomlTable& root) {
     study.thesis_dynamics = root.boolean_or("thesis_dynamics", false);
     std::set<std::string> verifications;
     for (const auto& table : root.tables("verify")) {
-        study.verifications.push_back(read_verification(table, verifications));
+        study.verifications.push_back(read_verification(table, verifications, study.notes));
     }
     std::set<std::string> comparisons;
     for (const auto& table : root.tables("compare")) {

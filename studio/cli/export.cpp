@@ -293,11 +293,10 @@ int run_export(Shell& shell, const ExportCommand& command) {
     }
     const std::string format = format_of(command);
     auto options = options_of(command);
-    if (options.max_error > 0.1 && command.max_error.find('%') == std::string::npos) {
-        shell.show({{core::Problem::Severity::warning,
-                     "--max-error " + command.max_error + " is " + cases::percent(options.max_error) +
-                         " of the range of the points: " + command.max_error + "% is with the sign",
-                     {}}});
+    if (const std::string missing = cases::percent_sign_missing("--max-error " + command.max_error, options.max_error,
+                                                                0.1, "the range of the points");
+        !missing.empty() && command.max_error.find('%') == std::string::npos) {
+        shell.show_warning(missing);
     }
     options.overwrite = options.overwrite || shell.force;
     const core::ReplacingAllowed by_the_export_itself;  // it knows its own files by what is in them

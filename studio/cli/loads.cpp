@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cases/percent.h"
 #include "core/batch_problems.h"
 #include "core/counted.h"
 #include "core/table.h"
@@ -279,7 +280,13 @@ void print(Shell& shell, const std::vector<postproc::Comparison>& comparisons) {
 }
 
 /// The loads against those that somebody states; exit code 4 when one is further off than allowed.
-int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, double allowed) {
+int check(Shell& shell, const std::vector<postproc::LoadsCase>& cases, const std::string& share) {
+    const double allowed = option_value("--check", share, "1");
+    if (const std::string missing =
+            underbody::cases::percent_sign_missing("--check " + share, allowed, 0.1, "the force");
+        !missing.empty() && share.find('%') == std::string::npos) {
+        shell.show_warning(missing);
+    }
     core::Problems notes;
     auto comparisons = postproc::compare_with_stated(cases, notes);
     shell.show(notes);
@@ -594,8 +601,7 @@ int run_loads(Shell& shell, const LoadsArguments& given) {
     check_conditions(batch, given);
     std::vector<Failure> failures;
     std::vector<postproc::LoadsCase> cases = cases_of(shell, given, batch, failures);
-    const int verdict =
-        given.check.empty() ? static_cast<int>(done) : check(shell, cases, option_value("--check", given.check, "1"));
+    const int verdict = given.check.empty() ? static_cast<int>(done) : check(shell, cases, given.check);
     show_odd_ones(shell, cases, given.base);
     core::Problems notes;
     if (given.mean) {

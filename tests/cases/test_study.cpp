@@ -27,6 +27,29 @@ protected:
     }
 };
 
+TEST_F(StudyFolder, AsksAboutSharesThatMayBePerCent) {
+    put("fields/ellipse-h5.csv", "x");
+    put("solver.csv", "case, lift_force [N]\nellipse-h5, 1\n");
+    const auto said = [&](const std::string& tolerance, const std::string& sigma) {
+        put("study.toml",
+            "title = \"t\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}.csv\"\n[[verify]]\nname = \"v\"\n"
+            "table = \"solver.csv\"\nquantities = [\"lift_force\"]\ntolerance = " +
+                tolerance +
+                "\n[[table]]\nname = \"l\"\nquantity = \"lift_force\"\naxes = [\"gap\"]\nrelative_sigma = " + sigma +
+                "\n");
+        std::string all;
+        for (const core::Problem& note : Study::open(folder.path()).notes) {
+            all += note.message + "\n";
+        }
+        return all;
+    };
+    EXPECT_EQ(said("0.01", "0.02"), "");
+    EXPECT_EQ(said("\"100 %\"", "\"200 %\""), "") << "said with its sign";
+    EXPECT_THAT(said("1", "2"),
+                testing::AllOf(HasSubstr("tolerance = 1 is 100 % of the force: \"1 %\" is with the sign"),
+                               HasSubstr("relative_sigma = 2 is 200 % of each value")));
+}
+
 TEST_F(StudyFolder, TakesConditionsFromNamesAndFromTheCase) {
     put("fields/ellipse-h5-p-2.csv", "x");
     put("fields/ellipse-h10-p0.csv", "x");

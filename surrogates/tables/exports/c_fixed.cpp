@@ -117,10 +117,29 @@ private:
         defines_ += "#define " + macro(what) + " (" + std::to_string(bits) + ")\n";
     }
 
+    /// The largest number that a coordinate can be, and a conversion that holds what is larger there.
+    void conversion(std::size_t k) {
+        const std::string name = identifier(g_.axes[k].name), of = upper(name_ + "_" + name);
+        const std::string most = core::format_number(std::ldexp(double{INT32_MAX}, -axes_[k].bits), 6);
+        defines_ += "/* " + g_.axes[k].name + " from -" + most + " to " + most + " " + g_.axes[k].unit +
+                    ": a plain conversion of more wraps around; this one holds it at the ends, and 0 for no number */\n"
+                    "#define " +
+                    of + "_RAW(v) (((double)(v) * " + scale(axes_[k].bits) +
+                    ") >= 2147483647.0 ? INT32_MAX : ((double)(v) * " + scale(axes_[k].bits) +
+                    ") <= -2147483647.0 ? -INT32_MAX : ((double)(v) == (double)(v)) ? (int32_t)((double)(v) * " +
+                    scale(axes_[k].bits) + " + ((double)(v) < 0.0 ? -0.5 : 0.5)) : 0)\n";
+    }
+    /// 2^bits as C reads it.
+    [[nodiscard]] static std::string scale(int bits) {
+        const std::string text = core::format_number(std::ldexp(1.0, bits), 17);
+        return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+    }
+
     void axis_data(std::size_t k) {
         const std::string id = std::to_string(k);
         const FixedAxis& axis = axes_[k];
         define(identifier(g_.axes[k].name), axis.bits);
+        conversion(k);
         out_ += "/* " + g_.axes[k].name + " [" + g_.axes[k].unit + "] times 2^" + std::to_string(axis.bits) + " */\n";
         array("int32_t", "x" + id, axis.x);
         array("uint32_t", "rate" + id, axis.rate, "U");
@@ -217,7 +236,10 @@ private:
         }
         const std::string first = identifier(g_.first().name);
         out_ += "}\n * " + first + " [" + g_.first().unit + "] is r." + first + ".value over 2^" + macro(first) +
-                ", its sigma likewise, its slopes over 2^" + macro(per(g_.first(), g_.axes[0])) + " ...\n */\n";
+                ", its sigma likewise, its slopes over 2^" + macro(per(g_.first(), g_.axes[0])) +
+                " ...\n * point[0] = " + upper(name_ + "_" + identifier(g_.axes[0].name)) + "_RAW(v) of a v in " +
+                g_.axes[0].unit +
+                " holds what is too large for it; where v is a constant no floating point is left.\n */\n";
         out_ += "#ifndef " + guard + "\n#define " + guard + "\n\n#include <stdint.h>\n\n" + defines_ + "\n";
         const std::string n = std::to_string(n_);
         out_ += "typedef struct {\n    int32_t value;\n    int32_t slope[" + n + "];\n    int32_t sigma;\n} " + name_ +

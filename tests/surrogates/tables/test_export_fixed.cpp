@@ -24,6 +24,7 @@ int main(void) {
         double out[4 + AXES];
         int k;
         for (k = 0; k < AXES; ++k) { point[k] = (int32_t)lround(ldexp(p[k], axis_bits[k])); }
+        if (T_GAP_RAW(p[0]) != point[0] || T_GAP_RAW(1e9) != INT32_MAX || T_GAP_RAW(-1e9) != -INT32_MAX) { return 1; }
         t_at(point, &r);
         out[0] = ldexp((double)r.lift_force.value, -T_LIFT_FORCE_BITS);
         out[1] = ldexp((double)r.lift_force.sigma, -T_LIFT_FORCE_BITS);
