@@ -13,7 +13,6 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-
 Wrench jet_wrench(std::span<const Jet> jets, std::span<const double> thrust) {
     Wrench sum;
     for (std::size_t i = 0; i < jets.size(); ++i) {
