@@ -475,6 +475,189 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
     result.velocity_turned = turn;
 }
 
+/// What is learned while the runs are read, one after the other.
+struct Reading {
+    const dynamics::Model& model;
+    const dynamics::Measurements& data;
+    HeaveRecords& result;
+    std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants{};  ///< by what a run holds
+    std::string unit{};       ///< hint where a gap looks to be in another one
+    std::size_t still = 0;    ///< runs whose gap stands still
+    std::size_t swapped = 0;  ///< runs whose gap and input look exchanged
+};
+
+std::shared_ptr<const dynamics::HeavePlant> plant_of(Reading& reading, const dynamics::Conditions& held) {
+    std::vector<double> key(held.value.begin(), held.value.end());
+    std::replace_if(
+        key.begin(), key.end(), [](double v) { return std::isnan(v); }, -1e300);
+    std::shared_ptr<const dynamics::HeavePlant>& plant = reading.plants[key];
+    if (!plant) {
+        plant = std::make_shared<dynamics::HeavePlant>(reading.model, held);
+    }
+    return plant;
+}
+
+/// The gap without the readings that are none, with its noise in `used`; false where the run is left out, and said.
+bool read_gap(Reading& reading, const dynamics::MeasuredRun& run, std::vector<double>& gap, UsedRun& used) {
+    const std::string file = run.table.source;
+    core::Problems& problems = reading.result.problems;
+    const std::vector<double>& time = run.table.numbers("time");
+    const std::size_t saturated = dynamics::drop_saturated(time, gap);
+    const double noise = dynamics::sensor_noise(time, gap);  // a reading at the end of the range has none
+    if (saturated > 0) {
+        remark(used.said, dynamics::saturated_text(run.name, saturated), file);
+    }
+    if (stuck(gap) || 2 * saturated > gap.size()) {
+        remark(problems,
+               "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out",
+               file);
+        ++reading.still;
+        return false;
+    }
+    const std::string reason = cannot_run(gap, *used.record.plant, reading.unit);
+    if (!reason.empty()) {
+        remark(problems, run.name + " is left out: " + reason, file);
+        return false;
+    }
+    const std::vector<double> pushed = run.values("input_force");
+    const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
+    const std::optional<double> declared = reading.data.declared_noise("gap");
+    if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
+        remark(
+            problems,
+            run.name +
+                " is left out: gap has no noise and input_force that of the gap sensor; the two columns look swapped",
+            file);
+        ++reading.swapped;
+        return false;
+    }
+    const std::size_t outliers = dynamics::drop_outliers(gap, std::max(noise, 1e-9));
+    if (outliers > 0) {
+        remark(used.said, dynamics::outliers_text(run.name, outliers), file);
+    }
+    if (!std::isfinite(noise)) {
+        remark(problems, run.name + " is left out: it has hardly any gap readings", file);
+        return false;
+    }
+    used.gap_noise = noise;
+    return true;
+}
+
+std::vector<double> steps_between(const std::vector<double>& time, const std::vector<double>& gap) {
+    std::vector<double> steps;
+    for (std::size_t i = 0, before = time.size(); i < time.size(); ++i) {
+        if (std::isfinite(gap[i])) {
+            if (before < i) {
+                steps.push_back(time[i] - time[before]);
+            }
+            before = i;
+        }
+    }
+    return steps;
+}
+
+/// Where it is measured and moves. `coloured`: the first reading of each step stands for it.
+void read_velocity(const Reading& reading, const dynamics::MeasuredRun& run, const std::vector<std::size_t>& step_of,
+                   bool coloured, UsedRun& used) {
+    const core::Column* velocity = run.table.find("heave_velocity");
+    if (velocity == nullptr || velocity->is_text() || !dynamics::empty_text(run, "heave_velocity").empty()) {
+        return;
+    }
+    HeaveRecord& record = used.record;
+    const std::vector<double>& time = run.table.numbers("time");
+    std::vector<double> values = dynamics::as_read(run, "heave_velocity", reading.model.records);
+    const double own = dynamics::sensor_noise(time, values);
+    if (stuck(values) || !std::isfinite(own)) {
+        remark(used.said,
+               "heave_velocity of " + run.name + " stands still for a fifth of the run or is missing: it is not used",
+               run.table.source);
+        return;
+    }
+    dynamics::drop_outliers(values, std::max(own, 1e-9));
+    used.velocity_noise = own;
+    average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
+    if (coloured) {
+        record.velocity = first_of_steps(values, step_of, record.time.size());
+        record.velocity_share.assign(record.time.size(), 1);
+    }
+}
+
+/// One run on the steps of all; nothing where it is left out, which is said.
+std::optional<UsedRun> used_run(Reading& reading, std::size_t index) {
+    const dynamics::MeasuredRun& run = reading.data.runs[index];
+    const std::string file = run.table.source;
+    if (const std::string none = dynamics::empty_text(run, "gap"); !none.empty()) {
+        remark(reading.result.problems, none + ": it is left out", file);
+        return {};
+    }
+    UsedRun used;
+    HeaveRecord& record = used.record;
+    record.name = run.name;
+    record.run = index;
+    const dynamics::Conditions held = held_conditions(run);
+    record.plant = plant_of(reading, held);
+    const std::vector<double>& time = run.table.numbers("time");
+    std::vector<double> gap = run.table.numbers("gap");
+    if (!read_gap(reading, run, gap, used)) {
+        return {};
+    }
+    used.steps = steps_between(time, gap);
+    const std::vector<std::size_t> step_of =
+        steps_of_rows(time, run.values("gap"), run.values("heave_velocity"), reading.result.step, record.time);
+    average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
+    const bool coloured = means_keep_scatter(record, used.gap_noise);
+    if (coloured) {
+        keep_first_of_steps(time, gap, step_of, record);
+    }
+    std::string held_at_mean;
+    record.lift_scale = lift_over_steps(reading.model, run, held, step_of, record.time.size(), held_at_mean);
+    if (!held_at_mean.empty()) {
+        remark(used.said,
+               held_at_mean + " changes within " + run.name +
+                   " and moves a table or one of several sources of lift: held at its mean",
+               file);
+    }
+    read_velocity(reading, run, step_of, coloured, used);
+    if (const std::string outside = keep_inside_tables(record, used.gap_noise); !outside.empty()) {
+        remark(used.said, outside, file);
+    }
+    read_input(run, reading.model.records, record);
+    const std::vector<double> input = run.values("input_force");
+    used.input_recorded = std::any_of(input.begin(), input.end(), [](double value) { return std::isfinite(value); });
+    if (record.time.size() < 20) {
+        remark(reading.result.problems, run.name + " has fewer than 20 steps: left out", file);
+        return {};
+    }
+    prepare_input(record);
+    return used;
+}
+
+/// Throws where what was left out says that the data are not what they are called.
+void check_left_out(const Reading& reading, bool none_used) {
+    const dynamics::Measurements& data = reading.data;
+    if (reading.swapped > 0 && 2 * reading.swapped >= data.runs.size()) {
+        // what looks right in the others is then chance
+        throw core::InputError("swapped",
+                               "gap and input_force look swapped in " + std::to_string(reading.swapped) + " of " +
+                                   std::to_string(data.runs.size()) +
+                                   " runs: gap has no noise, and input_force has that of the gap sensor",
+                               core::Place{data.folder.string(), {}, {}, {}},
+                               "exchange the two names in the header lines");
+    }
+    if (none_used) {
+        const core::Problems& problems = reading.result.problems;
+        const std::string first = problems.empty() ? "" : problems.front().message;
+        throw core::InputError(reading.unit.empty() ? "range" : "unit",
+                               "no run can be used" + (first.empty() ? std::string() : ": " + first),
+                               core::Place{data.folder.string(), {}, {}, {}},
+                               !reading.unit.empty() ? reading.unit
+                               : reading.still == data.runs.size()
+                                   ? "look at the gap sensor and its cable; a saturated one needs another range"
+                                   : "give the model tables that cover the gaps that were measured, or runs within "
+                                     "them; `underbody predict` shows the model beside each run");
+    }
+}
+
 }  // namespace
 
 HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics::Measurements& data) {
@@ -483,148 +666,14 @@ HeaveRecords prepare_heave_records(const dynamics::Model& model, const dynamics:
     }
     HeaveRecords result;
     result.step = step_for(data);
+    Reading reading{model, data, result};
     std::vector<UsedRun> all_used;
-    std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
-    std::string unit;
-    std::size_t still = 0;
-    std::size_t swapped = 0;
     for (std::size_t r = 0; r < data.runs.size(); ++r) {
-        const dynamics::MeasuredRun& run = data.runs[r];
-        const std::string file = run.table.source;
-        if (const std::string none = dynamics::empty_text(run, "gap"); !none.empty()) {
-            remark(result.problems, none + ": it is left out", file);
-            continue;
+        if (std::optional<UsedRun> used = used_run(reading, r)) {
+            all_used.push_back(std::move(*used));
         }
-        UsedRun used;
-        HeaveRecord& record = used.record;
-        record.name = run.name;
-        record.run = r;
-        const dynamics::Conditions held = held_conditions(run);
-        std::vector<double> key(held.value.begin(), held.value.end());
-        std::replace_if(
-            key.begin(), key.end(), [](double v) { return std::isnan(v); }, -1e300);
-        std::shared_ptr<const dynamics::HeavePlant>& plant = plants[key];
-        if (!plant) {
-            plant = std::make_shared<dynamics::HeavePlant>(model, held);
-        }
-        record.plant = plant;
-        const std::vector<double>& time = run.table.numbers("time");
-        std::vector<double> gap = run.table.numbers("gap");
-        const std::size_t saturated = dynamics::drop_saturated(time, gap);
-        const double noise = dynamics::sensor_noise(time, gap);  // a reading at the end of the range has none
-        if (saturated > 0) {
-            remark(used.said, dynamics::saturated_text(run.name, saturated), file);
-        }
-        if (stuck(gap) || 2 * saturated > gap.size()) {
-            remark(
-                result.problems,
-                "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out",
-                file);
-            ++still;
-            continue;
-        }
-        const std::string reason = cannot_run(gap, *plant, unit);
-        if (!reason.empty()) {
-            remark(result.problems, run.name + " is left out: " + reason, file);
-            continue;
-        }
-        const std::vector<double> pushed = run.values("input_force");
-        const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
-        const std::optional<double> declared = data.declared_noise("gap");
-        if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
-            remark(result.problems,
-                   run.name +
-                       " is left out: gap has no noise and input_force that of the gap sensor; the two columns look "
-                       "swapped",
-                   file);
-            ++swapped;
-            continue;
-        }
-        const std::size_t outliers = dynamics::drop_outliers(gap, std::max(noise, 1e-9));
-        if (outliers > 0) {
-            remark(used.said, dynamics::outliers_text(run.name, outliers), file);
-        }
-        if (!std::isfinite(noise)) {
-            remark(result.problems, run.name + " is left out: it has hardly any gap readings", file);
-            continue;
-        }
-        used.gap_noise = noise;
-        for (std::size_t i = 0, before = time.size(); i < time.size(); ++i) {
-            if (std::isfinite(gap[i])) {
-                if (before < i) {
-                    used.steps.push_back(time[i] - time[before]);
-                }
-                before = i;
-            }
-        }
-        const std::vector<std::size_t> step_of =
-            steps_of_rows(time, run.values("gap"), run.values("heave_velocity"), result.step, record.time);
-        average(time, gap, step_of, record.time.size(), record.gap, record.gap_share);
-        const bool coloured = means_keep_scatter(record, noise);
-        if (coloured) {
-            keep_first_of_steps(time, gap, step_of, record);
-        }
-        std::string held_at_mean;
-        record.lift_scale = lift_over_steps(model, run, held, step_of, record.time.size(), held_at_mean);
-        if (!held_at_mean.empty()) {
-            remark(used.said,
-                   held_at_mean + " changes within " + run.name +
-                       " and moves a table or one of several sources of lift: held at its mean",
-                   file);
-        }
-        const core::Column* velocity = run.table.find("heave_velocity");
-        if (velocity != nullptr && !velocity->is_text() && dynamics::empty_text(run, "heave_velocity").empty()) {
-            std::vector<double> values = dynamics::as_read(run, "heave_velocity", model.records);
-            const double own = dynamics::sensor_noise(time, values);
-            if (stuck(values) || !std::isfinite(own)) {
-                remark(used.said,
-                       "heave_velocity of " + run.name +
-                           " stands still for a fifth of the run or is missing: it is not used",
-                       file);
-            } else {
-                dynamics::drop_outliers(values, std::max(own, 1e-9));
-                used.velocity_noise = own;
-                average(time, values, step_of, record.time.size(), record.velocity, record.velocity_share);
-                if (coloured) {
-                    record.velocity = first_of_steps(values, step_of, record.time.size());
-                    record.velocity_share.assign(record.time.size(), 1);
-                }
-            }
-        }
-        if (const std::string outside = keep_inside_tables(record, noise); !outside.empty()) {
-            remark(used.said, outside, file);
-        }
-        read_input(run, model.records, record);
-        const std::vector<double> input = run.values("input_force");
-        used.input_recorded =
-            std::any_of(input.begin(), input.end(), [](double value) { return std::isfinite(value); });
-        if (record.time.size() < 20) {
-            remark(result.problems, run.name + " has fewer than 20 steps: left out", file);
-            continue;
-        }
-        prepare_input(record);
-        all_used.push_back(std::move(used));
     }
-    if (swapped > 0 && 2 * swapped >= data.runs.size()) {
-        // what looks right in the others is then chance
-        throw core::InputError("swapped",
-                               "gap and input_force look swapped in " + std::to_string(swapped) + " of " +
-                                   std::to_string(data.runs.size()) +
-                                   " runs: gap has no noise, and input_force has that of the gap sensor",
-                               core::Place{data.folder.string(), {}, {}, {}},
-                               "exchange the two names in the header lines");
-    }
-    if (all_used.empty()) {
-        const std::string first = result.problems.empty() ? "" : result.problems.front().message;
-        throw core::InputError(
-            unit.empty() ? "range" : "unit", "no run can be used" + (first.empty() ? std::string() : ": " + first),
-            core::Place{data.folder.string(), {}, {}, {}},
-            !unit.empty()               ? unit
-            : still == data.runs.size() ? "look at the gap sensor and its cable; a saturated one needs another range"
-                                        : "give the model tables that cover the gaps that were measured, or runs "
-                                          "within them; `underbody predict` "
-                                          "shows the model beside each run");
-    }
+    check_left_out(reading, all_used.empty());
     const core::Problems unsaid = dynamics::input_taken_as_zero(model, data);
     result.problems.insert(result.problems.end(), unsaid.begin(), unsaid.end());
     drop_copies(all_used, data, result.problems);
