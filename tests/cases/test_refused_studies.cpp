@@ -39,6 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refused{"mean = true\n", "is not known, so that it has no place among the others"},
         Refused{"[frame]\nmoments_about = [\"0 m\", \"1 m\"]\n", "needs three coordinates"},
+        Refused{"[frame]\nforward = \"-z\"\n", "forward and up lie along one axis"},
         Refused{"[frame]\nsymmetry = \"yy\"\n", "yy"},
         Refused{"[frame]\nsymmetry = \"z\"\n", "every lift would be zero"},
         Refused{"[frame]\nsymmetry = \"x\"\n", "every drag would be zero"},
@@ -91,6 +92,29 @@ TEST(RefusedSweeps, SayWhatIsWrong) {
     EXPECT_THAT(message(sweep + "[sweep.slurm]\noptions = [\"nice\"]\n"), HasSubstr("is no option of sbatch"));
 }
 
+TEST(RefusedSweeps, OfJetsThatCannotBe) {
+    const core::TemporaryFolder folder("refused-jets");
+    core::write_file(folder.path() / "shapes/s.toml", "x");
+    const auto message = [&](const std::string& says) {
+        try {
+            (void)Study::from_text("title = \"t\"\n" + body + "[sweep]\ngap = \"5 mm\"\nspeed = \"0.5 m/s\"\n" + says,
+                                   folder.path() / "study.toml");
+        } catch (const core::InputError& error) {
+            EXPECT_TRUE(error.place().line.has_value()) << says;
+            return error.message();
+        }
+        return std::string("accepted");
+    };
+    const std::string volts = "jet_voltage = [\"0 V\", \"12 V\"]\n", gain = "jet_flow_per_volt = \"2.2 mL/s/V\"\n";
+    EXPECT_THAT(message(volts + gain + "jet_flow = \"10 mL/s\"\n"), HasSubstr("two words for one jet"));
+    EXPECT_THAT(message(gain), HasSubstr("is of a jet_voltage, and there is none"));
+    EXPECT_THAT(message(volts + "jet_flow_per_volt = \"0 mL/s/V\"\n"), HasSubstr("must be above zero"));
+    EXPECT_THAT(message("jet_flow = []\n"), HasSubstr("jet_flow is empty"));
+    EXPECT_THAT(message("jet_flow = \"-1 mL/s\"\n"), HasSubstr("jet_flow is below zero: a nozzle blows"));
+    EXPECT_THAT(message(volts + gain + "jet_dead_band = \"-1 V\"\n"), HasSubstr("jet_dead_band is below zero"));
+    EXPECT_THAT(message("jet_flow = [\"10 mL/s\", \"0.01 L/s\"]\n"), HasSubstr("jet_flow says a value twice"));
+}
+
 TEST(RefusedDesigns, SayWhatIsWrong) {
     const core::TemporaryFolder folder("refused-design");
     core::write_file(folder.path() / "shapes/s.toml", "x");
@@ -109,6 +133,10 @@ TEST(RefusedDesigns, SayWhatIsWrong) {
     const std::string wanted = "[[design.objective]]\n" + lift + "sense = \"maximise\"\n";
     EXPECT_EQ(message(vary + wanted), "accepted");
     EXPECT_THAT(message("points = 0\n" + vary), HasSubstr("points is 0"));
+    EXPECT_THAT(message("points = 100001\n" + vary), HasSubstr("points is 100001"));
+    EXPECT_THAT(message("gap = []\n" + vary), HasSubstr("gap is empty"));
+    EXPECT_THAT(message("gap = [\"5 mm\", \"0 mm\"]\n" + vary), HasSubstr("it must be above zero"));
+    EXPECT_THAT(message("pitch = \"90 deg\"\n" + vary), HasSubstr("it must lie within +-90 deg"));
     EXPECT_THAT(message("kinematic_viscosity = \"0 m^2/s\"\n" + vary), HasSubstr("must be above zero"));
     EXPECT_THAT(message(""), HasSubstr("[design] varies nothing"));
     EXPECT_THAT(message(vary + vary), HasSubstr("varies twice"));

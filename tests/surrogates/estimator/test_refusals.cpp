@@ -5,8 +5,11 @@
 #include <cmath>
 
 #include "cases/thesis/published.h"
+#include "core/file.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/estimator/control/loop_region.h"
+#include "surrogates/estimator/model/moments.h"
+#include "surrogates/estimator/model/training.h"
 #include "surrogates/estimator/observe/observer.h"
 #include "surrogates/estimator/observe/surface_bank.h"
 
@@ -99,6 +102,61 @@ TEST(Refusals, OfEstimatorsByName) {
     region.axes[1].name = "heave_velocity";
     EXPECT_THAT(refusal([&] { (void)loop_probability(plant, law, LoopEstimator::nothing(), o, region, 0); }),
                 HasSubstr("at least one draw"));
+}
+
+TEST(Refusals, OfSamplesThatMomentsCannotBeMadeOf) {
+    const auto said = [](const std::vector<double>& values, std::size_t count, std::size_t channels) {
+        return refusal([&] {
+            (void)moments(SampleView::samples_in_rows(values.data(), count, channels), {"gap", "input_force"});
+        });
+    };
+    EXPECT_EQ(said({1, 2, 3, 4}, 2, 2), "accepted");
+    EXPECT_THAT(said({}, 0, 2), HasSubstr("there are no samples"));
+    EXPECT_THAT(said(std::vector<double>(65, 1.0), 1, 65), HasSubstr("at most 64 channels, not 65"));
+    EXPECT_THAT(said({1, 1e200, 2, -1e200}, 2, 2), HasSubstr("their squares overflow"));
+    EXPECT_THAT(said({1, 2, 3, INFINITY}, 2, 2), HasSubstr("sample 2 of channel 'input_force' is infinite"));
+    const core::TemporaryFolder folder("samples");
+    const auto of_file = [&](const std::string& bytes) {
+        core::write_file(folder.path() / "s.npy", bytes);
+        return refusal([&] { (void)moments_of_file(folder.path() / "s.npy"); });
+    };
+    EXPECT_THAT(of_file("no numbers at all"), HasSubstr("a NumPy .npy file of float64 in C order"));
+    const std::vector<double> two{1, 2, 3, 4};
+    write_npy(folder.path() / "good.npy", two.data(), 2, 2);
+    const std::string good = core::read_file(folder.path() / "good.npy");
+    EXPECT_EQ(of_file(good), "accepted");
+    EXPECT_NE(of_file(good.substr(0, good.size() - 8)), "accepted") << "a value less than the shape says";
+    std::string single = good;
+    single.replace(single.find("<f8"), 3, "<f4");
+    EXPECT_NE(of_file(single), "accepted");
+    std::string columns = good;
+    columns.replace(columns.find("False"), 5, "True ");
+    EXPECT_NE(of_file(columns), "accepted") << "in Fortran order";
+}
+
+TEST(Refusals, OfTrainingRegionsThatCannotBe) {
+    SeparatedPlant plant = reference_plant();
+    plant.contact_gap = 0;
+    const auto said = [&](void (*change)(TrainingOptions&)) {
+        TrainingOptions o;
+        o.gap_lower = 0.01;
+        o.gap_upper = 0.3;
+        o.velocity_lower = -0.03;
+        o.velocity_upper = 0.03;
+        o.samples = 100;
+        change(o);
+        return refusal([&] { (void)training_set(plant, o); });
+    };
+    EXPECT_EQ(said([](TrainingOptions&) {}), "accepted");
+    EXPECT_THAT(said([](TrainingOptions& o) { o.gap_upper = o.gap_lower; }), HasSubstr("the training region is empty"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.velocity_upper = -0.1; }), HasSubstr("the training region is empty"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.gap_lower = -1; }), HasSubstr("below the contact gap"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.samples = 0; }), HasSubstr("4,000,000 samples, not 0"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.interval = 0; }), HasSubstr("must be positive"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.focus_share = 1.5; }), HasSubstr("a share within 0..1"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.focus_share = 0.5; }), HasSubstr("a band of gaps"));
+    EXPECT_THAT(said([](TrainingOptions& o) { o.auxiliaries = {"ground_forse"}; }),
+                AllOf(HasSubstr("'ground_forse'"), HasSubstr("ground_force")));
 }
 
 TEST(Refusals, OfPolesThatCannotBePlaced) {
