@@ -241,13 +241,17 @@ void heave(const dynamics::Model& model, const dynamics::Conditions& held, const
 }
 
 void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
-                 const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text) {
+                 const std::optional<dynamics::HeaveEquilibrium>& at, nlohmann::json& json, std::string& text,
+                 Shell& shell) {
     const dynamics::HeavePitch plant(model, held);
     json["heave_pitch"] = nlohmann::json::array();
     for (const dynamics::HeaveEquilibrium& e : trims(plant.equilibria(), at)) {
         const dynamics::LinearSystem system = plant.linearised(e.gap, e.pitch);
         const std::vector<dynamics::Mode> modes = dynamics::modes(system, {"heave", "heave", "pitch", "pitch"});
         const dynamics::PitchFeedback gains = dynamics::pitch_lqr(plant, e.gap, e.pitch, {});
+        if (shell.json) {  // the text has no gains of it
+            shell.show(dynamics::loop_remarks(plant, gains, true));
+        }
         const dynamics::TrimError error = dynamics::pitch_trim_error(model, held, e.gap, e.pitch, !at);
         nlohmann::json one = system_json(system, modes, error);
         add_error(one, error);
@@ -506,7 +510,7 @@ int run_linear(const LinearArguments& a, Shell& shell) {
     text += text.empty() ? "" : free_in_pitch(model, held, json);
     const dynamics::Vehicle& v = model.vehicle;
     if (pitches(model)) {
-        heave_pitch(model, held, at, json, text);
+        heave_pitch(model, held, at, json, text, shell);
     }
     if (!std::isnan(v.yaw_inertia)) {
         surface(model, held, a, json, text);

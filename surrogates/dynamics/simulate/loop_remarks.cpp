@@ -74,10 +74,10 @@ void remark_on_sign(core::Problems& remarks, const char* name, double gain, cons
     }
 }
 
-/// Of gains that know no delay, lag and dead zone. `a`, `b`: small motions about the reference and what a commanded
-/// force does there; `k`: its gains.
+/// Of gains that know no delay, lag and dead zone. `about`: small motions about the reference `where`, and what a
+/// commanded force does there; `k`: its gains.
 void remark_on_actuator(core::Problems& remarks, const Actuator& actuator, const LinearSystem& about, const Matrix& k,
-                        double gap, bool designed) {
+                        const std::string& where, bool designed) {
     if (designed && actuator.dead_zone > 0) {
         warn(remarks, "the gains are designed without the actuator's dead zone of " +
                           core::told(actuator.dead_zone, "N") + ": what they ask for within it does nothing" +
@@ -86,10 +86,10 @@ void remark_on_actuator(core::Problems& remarks, const Actuator& actuator, const
                                      " off the reference"
                                : ""));
     }
-    if (!actuator.has_states()) {
+    const double delay = std::max(0.0, actuator.delay);  // one of a record that lags behind is none of the loop
+    if (delay == 0 && actuator.lag == 0) {
         return;
     }
-    const double delay = std::max(0.0, actuator.delay);
     const double growth =
         rightmost_pole(about.a, about.b.block(0, 0, about.b.rows(), 1), k, delay, actuator.lag).real();
     if (!designed && growth < no_growth) {
@@ -98,11 +98,10 @@ void remark_on_actuator(core::Problems& remarks, const Actuator& actuator, const
     const std::string what = std::string(delay > 0 ? "delay of " + core::told(delay, "s") : "") +
                              (delay > 0 && actuator.lag > 0 ? " and " : "") +
                              (actuator.lag > 0 ? "lag of " + core::told(actuator.lag, "s") : "");
-    const std::string where = " about " + core::told(gap, "m");
     const std::string loop =
         growth < no_growth
-            ? "the loop is stable" + where + ", its slowest part decays with " + core::told(-growth, "1/s")
-            : "the loop is unstable" + where + ", it grows with " + core::told(growth, "1/s");
+            ? "the loop is stable about " + where + ", its slowest part decays with " + core::told(-growth, "1/s")
+            : "the loop is unstable about " + where + ", it grows with " + core::told(growth, "1/s");
     warn(remarks, designed ? "the gains are designed without the actuator's " + what + "; with it " + loop
                            : "with the actuator's " + what + " " + loop);
 }
@@ -136,8 +135,8 @@ core::Problems loop_remarks(const HeavePlant& plant, const HeaveFeedback& feedba
     }
     LinearSystem about = heave_system(plant, gap);
     about.b(0, 0) *= passed;
-    remark_on_actuator(remarks, plant.terms.actuator, about, Matrix{{feedback.velocity_gain, feedback.gap_gain}}, gap,
-                       designed);
+    remark_on_actuator(remarks, plant.terms.actuator, about, Matrix{{feedback.velocity_gain, feedback.gap_gain}},
+                       core::told(gap, "m"), designed);
     return remarks;
 }
 
@@ -161,7 +160,9 @@ core::Problems loop_remarks(const HeavePitch& plant, const PitchFeedback& feedba
         about.b(i, 0) *= passed;
     }
     about.a = about.a - about.b.block(0, 1, 4, 1) * moment;  // the moment passes no actuator
-    remark_on_actuator(remarks, terms.actuator, about, force, gap, designed);
+    remark_on_actuator(remarks, terms.actuator, about, force,
+                       core::told(gap, "m") + " and " + core::told(feedback.reference[2], "rad", 4) + " nose up",
+                       designed);
     return remarks;
 }
 
