@@ -275,7 +275,7 @@ TEST(HeaveDiscovery, SaysWhatIsWrongWithTheData) {
         }
         return std::string("taken");
     };
-    const std::string turned = refused_at(-1, 0), beyond = refused_at(1, 1);
+    const std::string turned = refused_at(-1, 0), beyond = refused_at(1, 1.6);
     EXPECT_NE(turned.find("with the other sign it would fit"), std::string::npos) << turned;
     EXPECT_EQ(turned.find("thousand"), std::string::npos) << turned;
     EXPECT_NE(beyond.find("outside the tables"), std::string::npos) << beyond;
