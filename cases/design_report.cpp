@@ -66,22 +66,33 @@ void designs_table(core::HtmlPage& page, const tables::DesignSearch& search, con
     page.table(header, rows, caption);
 }
 
-}  // namespace
+/// What a page is made of.
+struct Sources {
+    const Design& design;
+    const FigureRenderer& renderer;
+    core::HtmlPage& page;
+    core::Progress& progress;
+};
+using Surrogates = std::map<std::string, Surrogate>;
 
-std::string design_report(const Design& design, const FigureRenderer& renderer, core::Progress& progress) {
-    const DesignSpec& spec = design.spec();
-    core::HtmlPage page("Design search", spec.shape.filename().string());
+void add_facts(const Sources& from) {
+    const auto& [design, renderer, page, progress] = from;
     std::size_t solved = 0, runs = 0;
     for (const DesignRun& run : design.runs()) {
         solved += run.usable() ? 1 : 0;
         runs += run.repeated ? 0 : 1;
     }
-    page.facts({{std::to_string(spec.variables.size()), "numbers of the shape varied"},
+    page.facts({{std::to_string(design.spec().variables.size()), "numbers of the shape varied"},
                 {std::to_string(design.plan().size()), "designs"},
                 {std::to_string(solved) + " of " + std::to_string(runs), "runs that can be used"}});
     for (const auto& note : design.notes) {
         page.warning(note.message);
     }
+}
+
+void add_plan(const Sources& from) {
+    const auto& [design, renderer, page, progress] = from;
+    const DesignSpec& spec = design.spec();
     page.section("Plan");
     std::vector<Figure> coverage;
     for (std::size_t v = 0; v + 1 < spec.variables.size(); ++v) {
@@ -103,22 +114,17 @@ std::string design_report(const Design& design, const FigureRenderer& renderer, 
     }
     header.insert(header.end(), {"fidelity", "why", "state"});
     page.folded_table("All designs", header, rows);
+}
 
-    std::map<std::string, Surrogate> surrogates;
-    try {
-        surrogates = design.surrogates(progress);
-    } catch (const core::InputError& error) {
-        page.section("Surrogates");
-        page.warning(error.message() + (error.hint().empty() ? "" : "; " + error.hint()));
-        return page.text();
-    }
+void add_surrogates(const Sources& from, const Surrogates& surrogates) {
+    const auto& [design, renderer, page, progress] = from;
     page.section("Surrogates");
     page.paragraph("A Gaussian process over shape and conditions" +
-                   std::string(spec.fidelities.size() > 1
+                   std::string(design.spec().fidelities.size() > 1
                                    ? ", each mesh a factor times the coarser one plus a process of its own"
                                    : "") +
                    "; its error is checked and scaled on shapes left out with all their runs.");
-    rows.clear();
+    std::vector<std::vector<std::string>> rows;
     std::vector<Figure> figures;
     for (const auto& [name, surrogate] : surrogates) {
         const auto& check = surrogate.check();
@@ -133,19 +139,22 @@ std::string design_report(const Design& design, const FigureRenderer& renderer, 
                 "error scaled by"},
                rows, "How surrogates do on shapes they have not seen");
     pictures(page, renderer, figures);
+}
 
+void add_sensitivities(const Sources& from, const Surrogates& surrogates) {
+    const auto& [design, renderer, page, progress] = from;
     page.section("Sensitivities");
-    figures.clear();
+    std::vector<Figure> figures;
     for (const auto& [name, surrogate] : surrogates) {
         figures.push_back(sensitivity_figure(surrogate, design.sensitivity(surrogate)));
         figures.push_back(one_at_a_time_figure(surrogate, middle_of(surrogate.variables())));
     }
     pictures(page, renderer, figures);
+}
 
-    if (spec.objectives.empty()) {
-        page.paragraph("[design] states no objective: nothing was searched.");
-        return page.text();
-    }
+void add_search(const Sources& from, Surrogates surrogates) {
+    const auto& [design, renderer, page, progress] = from;
+    const DesignSpec& spec = design.spec();
     const tables::DesignSearch search = design.search(std::move(surrogates));
     page.section("Search");
     pictures(page, renderer, {convergence_figure(design, search)});
@@ -170,6 +179,30 @@ std::string design_report(const Design& design, const FigureRenderer& renderer, 
                      {front_figure(design, search, front, known, progress), bodies_figure(design, front, progress)});
         }
         pictures(page, renderer, {parallel_figure(search, known, front)});
+    }
+}
+
+}  // namespace
+
+std::string design_report(const Design& design, const FigureRenderer& renderer, core::Progress& progress) {
+    core::HtmlPage page("Design search", design.spec().shape.filename().string());
+    const Sources from{design, renderer, page, progress};
+    add_facts(from);
+    add_plan(from);
+    Surrogates surrogates;
+    try {
+        surrogates = design.surrogates(progress);
+    } catch (const core::InputError& error) {
+        page.section("Surrogates");
+        page.warning(error.message() + (error.hint().empty() ? "" : "; " + error.hint()));
+        return page.text();
+    }
+    add_surrogates(from, surrogates);
+    add_sensitivities(from, surrogates);
+    if (design.spec().objectives.empty()) {
+        page.paragraph("[design] states no objective: nothing was searched.");
+    } else {
+        add_search(from, std::move(surrogates));
     }
     return page.text();
 }

@@ -125,7 +125,8 @@ private:
         return x;
     }
 
-    void head(const std::string& guard) {
+    /// What was written, from what, and how it is called.
+    void comment() {
         out_ += "/*\n";
         for (auto line : header_lines(g_)) {
             for (std::size_t at; (at = line.find("*/")) != std::string::npos;) {
@@ -147,9 +148,9 @@ private:
             out_ += (k == 0 ? "" : ", ") + identifier(g_.axes[k].name);
         }
         out_ += ") for the value alone.\n * A point that is not a number gives a value that is not a number.\n */\n";
-        out_ += "#ifndef " + guard + "\n#define " + guard + "\n\n";
-        out_ += "#define " + upper_name() + "_AXES " + std::to_string(n_) + "\n\n";
-        out_ += "typedef " + real_ + " " + name_ + "_real;\n\n";
+    }
+
+    void result_types() {
         const auto members = [&](const std::string& unit) {
             out_ += "    " + name_ + "_real value;                /* " + unit + " */\n";
             out_ += "    " + name_ + "_real slope[" + std::to_string(n_) + "];             /* " + unit +
@@ -179,6 +180,14 @@ private:
             "    int no_data;                   /* 1 where no points of the table lie around: outside, or in an empty "
             "corner of its box */\n} " +
             name_ + "_result;\n\n";
+    }
+
+    void head(const std::string& guard) {
+        comment();
+        out_ += "#ifndef " + guard + "\n#define " + guard + "\n\n";
+        out_ += "#define " + upper_name() + "_AXES " + std::to_string(n_) + "\n\n";
+        out_ += "typedef " + real_ + " " + name_ + "_real;\n\n";
+        result_types();
     }
 
     void data() {

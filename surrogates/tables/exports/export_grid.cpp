@@ -129,6 +129,75 @@ std::string made_from(const ForceTable& table) {
                          : ": " + std::to_string(table.points().rows()) + " points, fitted as " + table.kind());
 }
 
+/// What a file says of one table, and warns of; `first`: of all in the file.
+std::vector<std::string> told_of(const ForceTable& table, const ForceTable& first, ExportQuantity& quantity) {
+    quantity.told = {"Which was made" + made_from(table).substr(4)};
+    std::vector<std::string> said = table.impl().told;
+    for (auto&& line : other_constants(first)) {
+        said.push_back(std::move(line));
+    }
+    for (auto&& line : settled_lines(table.points())) {
+        said.push_back(std::move(line));
+    }
+    if (std::string line = unstated_errors(table); !line.empty()) {
+        line[0] = 'T';
+        if (std::find(said.begin(), said.end(), line) == said.end()) {  // an exported table says it already
+            said.push_back(std::move(line));
+        }
+    }
+    quantity.told.insert(quantity.told.end(), said.begin(), said.end());
+    if (quantity.difference > 0) {
+        quantity.told.push_back("It differed from what it was made from by at most " +
+                                core::format_number(quantity.difference, 3) + " " + quantity.unit);
+    }
+    for (const auto& remark : table.remarks()) {
+        if (remark.severity != core::Problem::Severity::note) {
+            quantity.warnings.push_back(remark.message);
+            said.push_back("WARNING: " + remark.message);
+        }
+    }
+    return said;
+}
+
+/// The grid, and what it holds for.
+void write_axes(ExportGrid& grid) {
+    auto& lines = grid.origin;
+    for (const auto& axis : grid.axes) {
+        lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.lower, 9) + " to " +
+                        core::format_number(axis.upper, 9) + ", " + std::to_string(axis.points.size()) + " points" +
+                        (axis.ends_with_range() ? ""
+                                                : " from " + core::format_number(axis.points.front(), 9) + " to " +
+                                                      core::format_number(axis.points.back(), 9) +
+                                                      ", because some of the tables reach further"));
+    }
+    for (const auto& [name, value] : grid.conditions) {
+        const auto* known = core::find_quantity(name);
+        lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) +
+                        (known != nullptr ? " " + known->unit : ""));
+    }
+}
+
+/// How far off the file may be, and what its sigma is.
+void write_errors(ExportGrid& grid, const std::vector<ForceTable>& tables) {
+    auto& lines = grid.origin;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const auto& q = grid.quantities[i];
+        if (q.difference > 0) {
+            const std::string what = tables.size() > 1 ? ": " + q.name : "";
+            lines.push_back((tables[i].sampling_error() > 0 ? "Differs from the forces of the model by at most "
+                                                            : "Differs from the full table by at most ") +
+                            core::format_number(q.difference, 3) + " " + q.unit + what);
+        }
+    }
+    const bool thinned =
+        std::any_of(grid.quantities.begin(), grid.quantities.end(), [](const auto& q) { return q.difference > 0; });
+    lines.push_back(
+        std::string("sigma is one standard deviation: errors of the points and of the fit between them; 0 where none "
+                    "are known") +
+        (thinned ? "; on these lines never less than that of the full table, and more where that changes between them"
+                 : ""));
+}
+
 void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const ExportOptions& options) {
     auto& lines = grid.origin;
     std::string title = "Force table by Underbody: ";
@@ -146,47 +215,9 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
         }
     }
     lines.insert(lines.end(), options.provenance.begin(), options.provenance.end());
-    for (const auto& axis : grid.axes) {
-        lines.push_back("Axis " + axis.name + " [" + axis.unit + "]: " + core::format_number(axis.lower, 9) + " to " +
-                        core::format_number(axis.upper, 9) + ", " + std::to_string(axis.points.size()) + " points" +
-                        (axis.ends_with_range() ? ""
-                                                : " from " + core::format_number(axis.points.front(), 9) + " to " +
-                                                      core::format_number(axis.points.back(), 9) +
-                                                      ", because some of the tables reach further"));
-    }
-    for (const auto& [name, value] : grid.conditions) {
-        const auto* known = core::find_quantity(name);
-        lines.push_back("Holds for " + name + " = " + core::format_number(value, 9) +
-                        (known != nullptr ? " " + known->unit : ""));
-    }
+    write_axes(grid);
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        ExportQuantity& quantity = grid.quantities[i];
-        quantity.told = {"Which was made" + made_from(tables[i]).substr(4)};
-        std::vector<std::string> said = tables[i].impl().told;
-        for (auto&& line : other_constants(tables.front())) {
-            said.push_back(std::move(line));
-        }
-        for (auto&& line : settled_lines(tables[i].points())) {
-            said.push_back(std::move(line));
-        }
-        if (std::string line = unstated_errors(tables[i]); !line.empty()) {
-            line[0] = 'T';
-            if (std::find(said.begin(), said.end(), line) == said.end()) {  // an exported table says it already
-                said.push_back(std::move(line));
-            }
-        }
-        quantity.told.insert(quantity.told.end(), said.begin(), said.end());
-        if (quantity.difference > 0) {
-            quantity.told.push_back("It differed from what it was made from by at most " +
-                                    core::format_number(quantity.difference, 3) + " " + quantity.unit);
-        }
-        for (const auto& remark : tables[i].remarks()) {
-            if (remark.severity != core::Problem::Severity::note) {
-                quantity.warnings.push_back(remark.message);
-                said.push_back("WARNING: " + remark.message);
-            }
-        }
-        for (auto& line : said) {
+        for (auto& line : told_of(tables[i], tables.front(), grid.quantities[i])) {
             if (std::find(lines.begin(), lines.end(), line) == lines.end()) {
                 lines.push_back(std::move(line));
             }
@@ -200,22 +231,7 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
     lines.push_back(options.frame == Frame::ned
                         ? "Frame: body axes, x forward, y starboard, z down (NED); pitch and pitch_moment nose up"
                         : "Frame: lift positive up, drag positive against the motion; pitch and pitch_moment nose up");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        const auto& q = grid.quantities[i];
-        if (q.difference > 0) {
-            const std::string what = tables.size() > 1 ? ": " + q.name : "";
-            lines.push_back((tables[i].sampling_error() > 0 ? "Differs from the forces of the model by at most "
-                                                            : "Differs from the full table by at most ") +
-                            core::format_number(q.difference, 3) + " " + q.unit + what);
-        }
-    }
-    const bool thinned =
-        std::any_of(grid.quantities.begin(), grid.quantities.end(), [](const auto& q) { return q.difference > 0; });
-    lines.push_back(
-        std::string("sigma is one standard deviation: errors of the points and of the fit between them; 0 where none "
-                    "are known") +
-        (thinned ? "; on these lines never less than that of the full table, and more where that changes between them"
-                 : ""));
+    write_errors(grid, tables);
 }
 
 }  // namespace

@@ -253,6 +253,30 @@ void ProcessMixture::choose_grid(const SetPoints& points) {
     }
 }
 
+/// Of each axis so many lines that the variance is not computed at: it costs the square of the points a node.
+std::size_t ProcessMixture::lines_to_skip() const {
+    const double points = static_cast<double>(parts.front().process.data().count());
+    const double work = points * points * static_cast<double>(nodes_of(grid) * parts.size());
+    std::size_t skip = 1;
+    while (work / std::pow(static_cast<double>(skip), static_cast<double>(grid.size())) > 2e9 && skip < 8) {
+        ++skip;
+    }
+    return skip;
+}
+
+std::vector<double> ProcessMixture::widening_on(const Grid& nodes) const {
+    std::vector<double> local(nodes_of(nodes));
+    std::vector<double> x(grid.size()), t(grid.size());
+    for (std::size_t node = 0; node < local.size(); ++node) {
+        place_of(nodes, node, x);
+        for (std::size_t k = 0; k < grid.size(); ++k) {
+            t[k] = parts.front().form.coordinate(k, x[k]);
+        }
+        local[node] = local_widening(t.data());
+    }
+    return local;
+}
+
 std::vector<double> ProcessMixture::tabulate() {
     const std::size_t count = nodes_of(grid);
     const std::size_t width = std::size_t{1} << grid.size();
@@ -271,27 +295,15 @@ std::vector<double> ProcessMixture::tabulate() {
             square[node] += part.weight * std::pow(own[node * width] - first[node * width], 2);
         }
     }
-    const double points = static_cast<double>(parts.front().process.data().count());
-    const double work = points * points * static_cast<double>(count * parts.size());
-    std::size_t skip = 1;
-    while (work / std::pow(static_cast<double>(skip), static_cast<double>(grid.size())) > 2e9 && skip < 8) {
-        ++skip;
-    }
+    const std::size_t skip = lines_to_skip();
     const Grid coarse = thinned(grid, skip);
     std::vector<double> within(nodes_of(coarse), 0.0);
     std::vector<double> plain(within.size(), 0.0);
-    std::vector<double> local(within.size());
-    std::vector<double> x(grid.size()), t(grid.size());
-    for (std::size_t node = 0; node < local.size(); ++node) {
-        place_of(coarse, node, x);
-        for (std::size_t k = 0; k < grid.size(); ++k) {
-            t[k] = parts.front().form.coordinate(k, x[k]);
-        }
-        local[node] = local_widening(t.data());
-    }
+    const std::vector<double> local = widening_on(coarse);
     for (const auto& part : parts) {
         add_variance(part, *this, coarse, local, plain, within);
     }
+    std::vector<double> x(grid.size());
     const auto spread_out = [&](std::vector<double>& variance) {
         for (double& v : variance) {
             v = std::sqrt(v);

@@ -44,6 +44,9 @@ struct ProcessMixture {
     void choose_grid(const SetPoints& points);
     /// Weighted mean of the parts as Hermite data on the grid; fills both sigmas. Units of the force.
     std::vector<double> tabulate();
+    [[nodiscard]] std::size_t lines_to_skip() const;
+    /// local_widening() at the nodes of a grid.
+    [[nodiscard]] std::vector<double> widening_on(const Grid& nodes) const;
     /// Values at the nodes of one draw from the joint posterior, as its difference from the mean (Hermite data `mean`):
     /// a part by its weight, then a random function conditioned on the points (Matheron's rule with random Fourier
     /// features: Wilson and others 2020), scaled so that its standard deviation at every node is that of the table.
