@@ -563,8 +563,19 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     const bool steady = data.kind == MeasurementKind::steady;
     core::Problems before = data.problems;
     const std::optional<Measurements> without = steady ? std::nullopt : without_doubtful_noise(model, data, before);
-    Prediction prediction =
-        steady ? predict_static(model, data) : predict_series(model, without ? *without : data, options, progress);
+    Prediction prediction;
+    try {
+        prediction =
+            steady ? predict_static(model, data) : predict_series(model, without ? *without : data, options, progress);
+    } catch (const core::InputError& error) {
+        const bool heave = !steady && motion_of(model, data) == nullptr;
+        if (const auto doubt =
+                heave ? doubtful_clock(model, data) : std::nullopt) {  // why the samples lie so far apart
+            throw core::InputError("unit", doubt->message + " (" + error.message() + ")", doubt->place,
+                                   "mend the unit of time in the header line");
+        }
+        throw;
+    }
     if (!steady) {
         const core::Problems unsaid = taken_as_zero(prediction.motion, model, data);
         before.insert(before.end(), unsaid.begin(), unsaid.end());

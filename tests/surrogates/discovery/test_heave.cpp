@@ -202,6 +202,15 @@ TEST(HeaveDiscovery, AsksForTheUnitOfTimesThatTheModelsForcesContradict) {
         ASSERT_TRUE(doubt) << factor;
         EXPECT_NE(doubt->message.find(words), std::string::npos) << doubt->message;
     }
+    std::string predicted;
+    try {
+        for (const core::Problem& problem : dynamics::predict(model, timed(60)).remarks) {
+            predicted += problem.message;
+        }
+    } catch (const core::InputError& error) {  // its samples lie too far apart to be predicted
+        predicted = error.message();
+    }
+    EXPECT_NE(predicted.find("headed [min]?"), std::string::npos) << predicted;
     const auto begin = std::chrono::steady_clock::now();
     try {
         (void)prepare_heave_records(model, timed(60));  // ten minutes of work before
