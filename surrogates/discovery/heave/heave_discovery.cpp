@@ -487,9 +487,14 @@ void HeaveLoop::check_input() {
         experiment_->set_hold(hold);
         return;
     }
-    smooth_corrections();
-    const Answer before = best_answer();
-    const std::optional<Answer> law = smooth_answer();
+    // A factor can be said with a name or a law of the input as well: the slip is the likelier story there.
+    const bool clock = factor == 1;
+    const Answer before = clock ? best_answer() : answer_of({}, null_noise_);
+    std::optional<Answer> law;
+    if (clock) {
+        smooth_corrections();
+        law = smooth_answer();
+    }
     const HeaveRecords as_logged = records_;
     const std::optional<HeaveRecords> test_as_logged = test_records_;
     change_input(-early, factor);
@@ -508,9 +513,9 @@ void HeaveLoop::check_input() {
     }
     records_read_.input_advance += early;
     records_read_.input_factor *= factor;
-    result_.mended = factor == 1 ? "input_force " + core::format_number(early, 2) + " s earlier"
-                                 : "input_force times " + core::format_number(factor, 4);
-    if (factor == 1) {
+    result_.mended = clock ? "input_force " + core::format_number(early, 2) + " s earlier"
+                           : "input_force times " + core::format_number(factor, 4);
+    if (clock) {
         warn("the recorded input comes about " + core::format_number(early, 2) +
              " s after the motion that it makes: the clocks of input_force and gap differ, or the vehicle has a law "
              "that leads as much; the input was moved forward by that much");
