@@ -187,7 +187,7 @@ TEST(Oracles, WorldVelocityKeepsItsSize) {  // O19
     EXPECT_NEAR(v[0], 0.15285958, 1e-8);
     EXPECT_NEAR(v[1], 0.25949777, 1e-8);
     EXPECT_NEAR(v[2], -0.10860413, 1e-8);
-    EXPECT_NEAR(dot(v, v), .3 * .3 + .1 * .1 + .05 * .05, 1e-15);
+    EXPECT_NEAR(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], .3 * .3 + .1 * .1 + .05 * .05, 1e-15);
 }
 
 TEST(Oracles, RegulatorOfTheVerticalChannel) {  // O20
