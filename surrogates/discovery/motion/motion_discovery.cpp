@@ -8,6 +8,7 @@
 #include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/run_split.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/declared_noise.h"
 
 namespace underbody::discovery {
 
@@ -84,6 +85,9 @@ void MotionLoop::split() {
     result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
     test_data_ = held_out_data(split, data_, run_of);
     test_data_.motion = shape().name;
+    if (auto without = dynamics::without_doubtful_noise(model_, test_data_, result_.problems)) {
+        test_data_ = std::move(*without);  // as predict takes them
+    }
     std::vector<MotionRecord> train;
     for (const std::size_t i : split.train) {
         train.push_back(std::move(records[i]));

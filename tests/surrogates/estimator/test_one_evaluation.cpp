@@ -110,17 +110,18 @@ struct State {
     double t = 0, h = 0, w = 0, u = 0;
 };
 
-/// dq/dt of heave with pitch and of the whole body, both with the current `Surroundings` and level.
+/// dq/dt of heave with pitch and of the whole body, level and without speed (by which the inertia of the water along
+/// and across the body turns the whole body alone).
 struct PitchRates {
     double heave_pitch = 0, body = 0;
 };
 
-PitchRates pitch_rates(const Model& model, const State& s, const Surroundings& around) {
+PitchRates pitch_rates(Model model, const State& s, const Surroundings& around) {
+    model.conditions[Channel::speed] = 0;
     PitchState pitch_rate{};
     HeavePitch(model).rate({s.h, s.w, 0, 0}, ContactState::free, pitch_rate, around);
     const RigidBody body(model);
     BodyState y{}, rate{};
-    y[state_u] = model.conditions[Channel::speed];
     y[state_w] = -s.w;
     y[state_z] = body.height_for_gap(s.h, 0);
     body.rate(y, {}, ContactState::free, rate, around);
