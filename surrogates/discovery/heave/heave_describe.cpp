@@ -44,6 +44,14 @@ void HeaveLoop::measure_error() {
             result_.error.push_back(change);
         }
     }
+    if (!result_.error.empty() && !result_.rest.is_noise) {
+        // windows begun from a filter that expects a random force miss more than predict does: no more than that is
+        // left
+        const double left = result_.error.front().after.rmse, twins = result_.rest.twins;
+        result_.rest.is_noise = left <= calibration_.most_over_twins * twins;
+        result_.rest.unexplained =
+            std::min(result_.rest.unexplained, std::sqrt(std::max(0.0, left * left - twins * twins)));
+    }
     const HeaveExperiment& test = held_out_runs();
     result_.consequence.estimator_before = estimator_error(test, {}, declared_noise_, uses_, after_noise_);
     result_.consequence.estimator_after = uses_.empty()
