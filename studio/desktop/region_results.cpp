@@ -38,6 +38,16 @@ namespace underbody::studio {
 
 namespace {
 
+/// Of a motion that is drawn: until it touches, or leaves the map.
+dynamics::TrajectoryOptions motion_options(double duration, double escape_gap) {
+    dynamics::TrajectoryOptions options;
+    options.duration = duration;
+    options.output_step = duration / 3000;
+    options.escape_gap = escape_gap;
+    options.stop_at_contact = true;
+    return options;
+}
+
 QString summary(const dynamics::StabilityRegion& region) {
     QString text = "<table cellspacing=0 cellpadding=2>";
     for (const auto& end : region.classes) {
@@ -327,11 +337,7 @@ void RegionPanel::compute_motion() {
         return;
     }
     motion_->show_text("…");
-    dynamics::TrajectoryOptions options;
-    options.duration = duration();
-    options.output_step = options.duration / 3000;
-    options.escape_gap = region_->escape_gap;
-    options.stop_at_contact = true;
+    const dynamics::TrajectoryOptions options = motion_options(duration(), region_->escape_gap);
     jobs_.start("trajectory", "motion",
                 [this, model = changed_model(), start = *settings().start, options, gains = settings().feedback,
                  key = motion_of_](core::Progress& progress) {
@@ -352,11 +358,7 @@ void RegionPanel::compute_motion() {
 
 void RegionPanel::compute_pitch_motion() {
     motion_->show_text("…");
-    dynamics::TrajectoryOptions options;
-    options.duration = duration();
-    options.output_step = options.duration / 3000;
-    options.escape_gap = region_->escape_gap;
-    options.stop_at_contact = true;
+    const dynamics::TrajectoryOptions options = motion_options(duration(), region_->escape_gap);
     dynamics::PitchState start{};
     for (const auto& [name, value] : settings().start_of) {
         start[place_of(name)] = value;
