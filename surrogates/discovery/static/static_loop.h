@@ -44,6 +44,7 @@ private:
     void open_gate();
     /// The best five singles, each with every other; without those that undo each other.
     [[nodiscard]] std::vector<FittedHypothesis> pairs_of_leaders() const;
+    [[nodiscard]] bool does_as_much(const FittedHypothesis& form, const FittedHypothesis& richer) const;
     [[nodiscard]] bool earns_its_place(const FittedHypothesis& pair) const;
     /// What one of two effects leaves would pass for accidents and coloured noise: the best pair beside the singles,
     /// for left_over() alone.
@@ -51,6 +52,7 @@ private:
     /// A second effect is looked for only where the best single one leaves structure, and stays only when it earns its
     /// place; or, as a rival, where the best single one has two free numbers and the two together no more.
     void fit_pairs();
+    void add_rivals(std::vector<FittedHypothesis>& found, bool explained);
     /// Two laws of which each does far more than both together (a gain of seven beside a power that undoes it) are no
     /// two effects: they bend into a law that neither has.
     [[nodiscard]] bool cancels(const FittedHypothesis& pair) const;

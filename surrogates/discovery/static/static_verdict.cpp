@@ -1,8 +1,8 @@
 // From fitted effects to a verdict for static sets: the gate, pairs, what they leave, and how stable the answer is.
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <numeric>
-#include <set>
 
 #include "core/no_limit.h"
 #include "core/parallel.h"
@@ -70,18 +70,29 @@ Hypothesis from_many_starts(const FittedHypothesis& first, const Hypothesis& sec
 
 }  // namespace
 
+/// A form of the same law with fewer numbers, where those that it lacks add less than a second effect must: beside one
+/// they may be too many.
+bool StaticLoop::does_as_much(const FittedHypothesis& form, const FittedHypothesis& richer) const {
+    return form.hypothesis.names == richer.hypothesis.names &&
+           form.hypothesis.parameters.size() < richer.hypothesis.parameters.size() &&
+           form.score() - richer.score() < calibration_.pair_share * richer.explained;
+}
+
 std::vector<FittedHypothesis> StaticLoop::pairs_of_leaders() const {
     std::vector<std::size_t> order(singles_);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
     std::vector<std::size_t> leaders;
-    std::set<std::vector<std::string>> seen;
+    std::map<std::vector<std::string>, std::size_t> taken;  // the last form of each law
     for (const std::size_t i : order) {
         std::vector<std::string> law = fitted_[i].hypothesis.names;
         const std::string& same = dynamics::effect(law.front()).info().search.same_law_as;
         law.front() = same.empty() ? law.front() : std::max(law.front(), same);  // under two names it takes one place
-        if (leaders.size() < 5 && seen.insert(law).second) {
+        const auto last = taken.find(law);
+        const bool leads = last == taken.end() ? taken.size() < 5 : does_as_much(fitted_[i], fitted_[last->second]);
+        if (leads) {
+            taken[law] = i;
             leaders.push_back(i);
         }
     }
@@ -133,33 +144,48 @@ void StaticLoop::try_two() {
 
 void StaticLoop::fit_pairs() {
     constexpr std::size_t bends = 2;  // numbers of a law that can do what two effects of one number do together
-    constexpr double both = 0.1;      // chance before the data that it is two; many pairs are tried
     const std::size_t numbers = best_single_ < fitted_.size() ? fitted_[best_single_].hypothesis.parameters.size() : 0;
     const bool explained = rest_.p > calibration_.unknown_p;
     if (best_single_ >= fitted_.size() || (explained && numbers < bends)) {
         return;
     }
     std::vector<FittedHypothesis> found = pairs_of_leaders();
-    std::erase_if(
-        found, [&](const FittedHypothesis& pair) { return explained && pair.hypothesis.parameters.size() > numbers; });
     const std::size_t best = best_hypothesis(found, 2);
+    if (!explained && best < found.size() && earns_its_place(found[best])) {
+        const SmoothFit rest = structure_->best(found[best].fit.residuals);
+        // two laws together bend to much: what they leave must look like noise, or nearly
+        if (rest.p > calibration_.unknown_p ||
+            structure_left(rest, found[best].explained) < calibration_.pair_rest_share * calibration_.unknown_share) {
+            fitted_.insert(fitted_.end(), found.begin(), found.end());
+            rest_ = rest;
+            return;
+        }
+    }
+    std::erase_if(found, [&](const FittedHypothesis& pair) { return pair.hypothesis.parameters.size() > numbers; });
+    add_rivals(found, explained);
+}
+
+/// Two effects that do with no more numbers what one law of several does: the likeliest where that law leaves nothing,
+/// else all that leave no more than it.
+void StaticLoop::add_rivals(std::vector<FittedHypothesis>& found, bool explained) {
+    constexpr double both = 0.1;  // chance before the data that it is two; many pairs are tried
+    const std::size_t best = best_hypothesis(found, 2), single = best_single_;
     if (best >= found.size()) {
         return;
     }
-    if (explained) {
-        found[best].rival = true;
-        found[best].hypothesis.prior *= both;
-        fitted_.push_back(std::move(found[best]));
+    const SmoothFit rest = explained ? rest_ : structure_->best(found[best].fit.residuals);
+    if (rest.p < rest_.p) {
         return;
     }
-    const SmoothFit rest = structure_->best(found[best].fit.residuals);
-    // two laws together bend to much: what they leave must look like noise, or nearly
-    if (earns_its_place(found[best]) &&
-        (rest.p > calibration_.unknown_p ||
-         structure_left(rest, found[best].explained) < calibration_.pair_rest_share * calibration_.unknown_share)) {
-        fitted_.insert(fitted_.end(), found.begin(), found.end());
-        rest_ = rest;
+    if (explained) {
+        found = {found[best]};
     }
+    for (FittedHypothesis& pair : found) {
+        pair.rival = true;
+        pair.hypothesis.prior *= both;
+        fitted_.push_back(std::move(pair));
+    }
+    rest_ = best_hypothesis(fitted_, 2) == single ? rest_ : rest;
 }
 
 bool StaticLoop::cancels(const FittedHypothesis& pair) const {

@@ -361,6 +361,48 @@ TEST(Guards, AScaleAndAnOffsetAtOnceAreBothNamed) {
     }
 }
 
+/// The scale of one load cell beside an offset that all quantities feel: "each with its own number" fits that best
+/// alone, and had one number too many beside another effect to stand against the three of a roughness.
+TEST(Guards, TheScaleOfOneQuantityAndAnOffsetAreBothNamed) {
+    const auto lift = [](double h) {
+        return 0.9 * std::exp(-h / 6e-4) - 0.62 * std::exp(-h / 0.021) * (1 - 0.45 * std::exp(-h / 0.0017)) + 0.053;
+    };
+    const auto drag = [](double h) { return 0.16 + 0.19 * std::exp(-h / 0.003); };
+    for (const std::uint64_t seed : {1U, 4U}) {
+        const core::TemporaryFolder folder("scale-and-offset");
+        std::string table = "gap [m], lift_force [N], drag_force [N]\n", rows = table;
+        rows.insert(rows.find(", lift"), ", speed [m/s]");
+        for (int k = 0; k <= 120; ++k) {
+            const double h = 2e-4 * std::pow(500.0, k / 120.0);
+            table += test::written(h) + ", " + test::written(lift(h)) + ", " + test::written(drag(h)) + "\n";
+        }
+        core::Random random(seed);
+        for (const double v : {0.25, 0.4, 0.6, 0.8, 1.0}) {
+            for (int k = 0; k < 16; ++k) {
+                const double set = 0.0015 * std::pow(27.0, k / 15.0), h = set + 1.2e-4, times = v * v / 0.25;
+                rows += test::written(set) + ", " + test::written(v) + ", " +
+                        test::written(1.09 * lift(h) * times + 0.012 * random.normal()) + ", " +
+                        test::written(drag(h) * times + 0.012 * random.normal()) + "\n";
+            }
+        }
+        std::string model = "[vehicle]\nmass = \"2.2 kg\"\n";
+        for (const char* quantity : {"lift_force", "drag_force"}) {
+            model += std::string("[[force]]\nquantity = \"") + quantity +
+                     "\"\ntable = \"table.csv\"\nscale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n";
+        }
+        core::write_file(folder.path() / "table.csv", table);
+        core::write_file(folder.path() / "bench.csv", rows);
+        core::write_file(folder.path() / "model.toml", model);
+        core::write_file(folder.path() / "dataset.toml",
+                         "kind = \"static\"\n[noise]\nlift_force = \"0.012 N\"\ndrag_force = \"0.012 N\"\n"
+                         "[[run]]\nfile = \"bench.csv\"\n");
+        const Discovery found = found_in(folder.path());
+        ASSERT_EQ(found.effects.size(), 2U) << seed << ": " << found.sentence;
+        EXPECT_EQ(found.effects[0].name, "gap_offset") << found.sentence;
+        EXPECT_EQ(found.effects[1].name, "sensor_gain") << found.sentence;
+    }
+}
+
 TEST(Guards, AThrusterThatTheGroundWeakensIsNamed) {
     UNDERBODY_NEEDS_SHARED("examples/loop-hard");
     const Discovery found = found_in(hard("thrust-by-gap"));
