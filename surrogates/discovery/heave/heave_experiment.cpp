@@ -40,9 +40,7 @@ HeaveExperiment::HeaveExperiment(const dynamics::Model& model, const HeaveRecord
                                  std::optional<double> declared_velocity_noise)
     : model_(model), records_(records), chosen_(std::move(chosen)) {
     for (const HeaveRecord& record : records_.records) {
-        dynamics::HeaveTerms terms = record.plant->terms;
-        terms.sources.clear();
-        bare_.push_back(std::move(terms));
+        bare_.push_back(record.plant->terms);
     }
     const auto choose = [&](const char* channel, std::optional<double> declared, double estimated, std::string& from) {
         const dynamics::JudgedNoise judged = dynamics::judged_noise(channel, declared, estimated);

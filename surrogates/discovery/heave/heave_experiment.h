@@ -136,7 +136,7 @@ private:
     const dynamics::Model& model_;
     const HeaveRecords& records_;
     std::vector<std::size_t> chosen_;
-    std::vector<dynamics::HeaveTerms> bare_;  ///< per record: terms without the sources' tables, cheap to copy
+    std::vector<dynamics::HeaveTerms> bare_;  ///< per record: terms without effects
     HeaveNoise noise_;
     std::string gap_from_;
     std::string velocity_from_;

@@ -9,6 +9,7 @@
     X(linear_damping)           \
     X(quadratic_damping)        \
     X(squeeze_film_damping)     \
+    X(lift_lag)                 \
     X(added_mass)               \
     X(gap_dependent_added_mass) \
     X(tether_stiffness)         \

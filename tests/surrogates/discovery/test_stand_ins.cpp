@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "make_data.h"
+#include "reading_rig.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/wording.h"
 
@@ -23,12 +24,18 @@ Discovery found_in(const std::function<double(double, double, double)>& extra, s
     return discover(test::heave_model(folder.path()), test::heave_runs(extra, 8, 50, seed, rig), options);
 }
 
+/// Of a rig whose controller is fed the noisy reading.
+Discovery found_in(const test::ReadingRig& rig, std::uint64_t seed) {
+    const core::TemporaryFolder folder("stand-ins");
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    return discover(test::heave_model(folder.path()), test::reading_runs(rig, seed), options);
+}
+
 bool corrected(const Discovery& found) {
     return std::any_of(found.effects.begin(), found.effects.end(),
                        [](const FoundEffect& effect) { return !effect.uses.empty(); });
 }
-
-double nothing(double, double, double) { return 0; }
 
 }  // namespace
 
@@ -47,12 +54,13 @@ TEST(StandIns, AForceThatGrowsInTimeIsALawOfTime) {
 
 /// A misfit of many noises made the twins' filter expect a random force, and their own error as large as it.
 TEST(StandIns, ALimitOfTheActuatorIsNoNoise) {
-    test::HeaveRig rig;
-    rig.seconds = 40;
-    rig.felt = [](double u) { return std::clamp(u, -0.045, 0.045); };
-    for (const std::uint64_t seed : {1U, 2U}) {
-        const Discovery found = found_in(nothing, seed, rig);
+    test::ReadingRig rig;
+    rig.felt = [](double u) { return std::min(u, 0.055); };
+    for (const std::uint64_t seed : {1U, 3U}) {
+        const Discovery found = found_in(rig, seed);
         EXPECT_EQ(found.verdict, "unknown") << found.sentence;
+        EXPECT_EQ(found.mended, "") << found.sentence;
+        EXPECT_FALSE(found.by_run) << found.sentence;
         EXPECT_THAT(found.depends_on, testing::Contains("input_force")) << found.sentence;
         EXPECT_LT(found.rest.twins, 1.6 * rig.noise) << found.sentence;
         EXPECT_LE(found.error.front().after.rmse, found.error.front().before.rmse) << found.sentence;
@@ -60,14 +68,31 @@ TEST(StandIns, ALimitOfTheActuatorIsNoNoise) {
 }
 
 TEST(StandIns, ADragOneWayIsNoClock) {
-    test::HeaveRig rig;
-    rig.seconds = 40;
+    test::ReadingRig rig;
+    rig.extra = [](double, double, double w) { return w > 0 ? -12 * w * w : 0.0; };
     for (const std::uint64_t seed : {1U, 2U}) {
-        const Discovery found = found_in([](double, double, double w) { return w > 0 ? -12 * w * w : 0.0; }, seed, rig);
+        const Discovery found = found_in(rig, seed);
         EXPECT_EQ(found.mended, "") << found.sentence;
         EXPECT_NE(found.verdict, "none") << found.sentence;
         EXPECT_LT(found.error.front().after.rmse, found.error.front().before.rmse) << found.sentence;
     }
+}
+
+/// Between its gaps a lift that follows late damps as a film does, and was named so at above 0.99.
+TEST(StandIns, ALiftThatLagsIsNoFilm) {
+    constexpr double late = 0.4;  // s
+    test::ReadingRig rig;
+    rig.extra = [now = 0.0, last = 1e9](double t, double h, double) mutable {
+        const double lift = test::lift_of(h);
+        now = t < last - 1 ? lift : now + (1 - std::exp(-std::max(t - last, 0.0) / late)) * (lift - now);
+        last = t;
+        return now - lift;
+    };
+    const Discovery found = found_in(rig, 2);
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    EXPECT_EQ(found.effects.front().name, "lift_lag") << found.sentence;
+    EXPECT_NEAR(found.effects.front().parameters.front().value, late, 0.04);
+    EXPECT_LT(found.error.front().after.rmse, 1.3 * rig.noise) << found.sentence;
 }
 
 /// "Nothing is missing" is said of nothing but noise: where the fitted runs hold more, and no other run bears it out,
