@@ -40,29 +40,14 @@ struct DiscoverArguments {
     std::vector<std::string> exports;
 };
 
-/// "", " over 2 s", " in free run".
-std::string horizon_text(const discovery::ErrorChange& change) {
-    return change.horizon <= 0          ? ""
-           : std::isinf(change.horizon) ? " in free run"
-                                        : " over " + core::format_number(change.horizon, 3) + " s";
-}
-
 /// The smallest effects that would have been seen, one a line.
 std::string limits_text(const discovery::Discovery& found) {
-    constexpr std::size_t most = 6;
-    std::string text;
-    std::size_t lines = 0;
-    for (const discovery::DetectionLimit& limit : found.limits) {
-        if (std::isfinite(limit.value) && lines++ < most) {
-            text += "  " + limit.name + ": " + limit.parameter + " " +
-                    discovery::value_text({limit.parameter, limit.value, 0, limit.unit}) + "\n";
-        }
+    const discovery::LimitsText limits = discovery::limits_text(found.limits);
+    std::string text = limits.lines.empty() ? "" : "\n" + limits.heading + "\n";
+    for (const std::string& line : limits.lines) {
+        text += "  " + line + "\n";
     }
-    return text.empty() ? ""
-                        : "\nSmallest effects that would stand out of the noise of the fitted data, nine times in ten "
-                          "(all of them in "
-                          "the report; to be named an effect must lower the error of held-out data, too):\n" +
-                              text;
+    return text;
 }
 
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
@@ -83,17 +68,15 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     }
     text += missing ? "" : limits_text(found);
     for (const discovery::ErrorChange& change : found.error) {
-        text += "\nError of " + change.channel + horizon_text(change) + discovery::error_is_on(found) + ": " +
+        text += "\nError of " + change.channel + discovery::horizon_text(change.horizon) +
+                discovery::error_is_on(found) + ": " +
                 (missing ? core::told(change.before.rmse, change.unit, 3) + " -> " +
                                core::told(change.after.rmse, change.unit, 3)
                          : core::told(change.before.rmse, change.unit, 3)) +
                 " (noise " + core::told(change.noise, change.unit, 3) + ")";
     }
     for (const discovery::AxisResidual& axis : found.axes) {
-        text += "\nThe model lacks of " + axis.quantity + ": " + core::format_number(axis.rms_before, 3) + " " +
-                axis.unit + " (rms, mean " + core::format_number(axis.mean_before, 3) + "), with what was found " +
-                core::format_number(axis.rms_after, 3) + " " + axis.unit + "; noise in it " +
-                core::format_number(axis.sigma, 2) + " " + axis.unit;
+        text += "\n" + discovery::axis_text(axis);
     }
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
     text += missing ? "New model: " + (folder / "model.toml").string() +

@@ -15,6 +15,7 @@
 #include <QUrl>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -128,7 +129,13 @@ QString effect_rows(const json& effects, const char* last_key, const QString& la
     return text + "</table>";
 }
 
-QString error_line(const json& error) {
+/// "" where there is none; infinite: in free run.
+double horizon(const json& error) {
+    return error.value("free_run", false) ? std::numeric_limits<double>::infinity() : error.value("horizon_s", 0.0);
+}
+
+/// `held_out`: which data all errors are of.
+QString error_line(const json& error, const QString& held_out) {
     if (!error.is_object() || !error.contains("before")) {
         return {};
     }
@@ -138,16 +145,72 @@ QString error_line(const json& error) {
         return scaled(one, "rmse", shown.factor, 3) + " (" + scaled(one, "low", shown.factor, 3) + " … " +
                scaled(one, "high", shown.factor, 3) + ")";
     };
-    const QString held_out = value(error, "held_out");
-    QString text = "<p>Error of " + value(error, "channel") + qt(discovery::error_is_on(held_out.toStdString())) +
-                   (held_out.isEmpty() ? "" : " (" + held_out + ")") + ": <b>" + interval("before") + "</b> → <b>" +
-                   (error.contains("after") ? interval("after") : QString("–")) + "</b> " +
-                   html(pretty_unit(shown.unit));
+    const bool other = error.contains("after") && error["after"] != error["before"];  // nothing was found: one number
+    QString text = "<p>Error of " + prose(value(error, "channel")) + qt(discovery::horizon_text(horizon(error))) +
+                   qt(discovery::error_is_on(held_out.toStdString())) +
+                   (held_out.isEmpty() ? "" : " (" + held_out + ")") + ": <b>" + interval("before") + "</b>" +
+                   (other ? " → <b>" + interval("after") + "</b> " : QString(" ")) + html(pretty_unit(shown.unit));
     if (error.contains("in_noise")) {
-        text += "; in standard deviations of the noise " + value(error["in_noise"], "before", 3) + " → " +
-                value(error["in_noise"], "after", 3);
+        text += "; in standard deviations of the noise " + value(error["in_noise"], "before", 3) +
+                (other ? " → " + value(error["in_noise"], "after", 3) : QString());
     }
     return text + "</p>";
+}
+
+json list_in(const json& document, const char* key) {
+    const bool there = document.is_object() && document.contains(key) && document[key].is_array();
+    return there ? document[key] : json::array();
+}
+
+/// The chief error, and those of longer predictions and of other channels.
+QString error_lines(const json& document) {
+    const json chief = document.value("error", json::object());
+    const QString held_out = value(chief, "held_out");
+    const json all = list_in(document, "errors");
+    QString text = all.empty() ? error_line(chief, held_out) : QString();
+    for (const auto& one : all) {
+        text += error_line(one, held_out);
+    }
+    for (const auto& one : list_in(document, "axes")) {
+        const auto number = [&](const char* of, const char* key) {
+            return one.value(of, json::object()).value(key, 0.0);
+        };
+        text +=
+            "<p>" +
+            prose(html(discovery::axis_text({one.value("quantity", ""), one.value("unit", ""), number("before", "mean"),
+                                             number("before", "rms"), number("after", "mean"), number("after", "rms"),
+                                             one.value("sigma", 0.0)}))) +
+            "</p>";
+    }
+    return text;
+}
+
+/// What the command says of the data and of the verdict: warnings, or what only tells.
+QString remarks(const json& document, bool notes) {
+    QString rows;
+    for (const auto& one : list_in(document, "problems")) {
+        if ((one.value("severity", "warning") == "note") == notes) {
+            rows += "<li>" + prose(value(one, "message")) + "</li>";
+        }
+    }
+    return rows.isEmpty() ? QString()
+                          : (notes ? "<h3>Remarks on the data</h3>" : "<p><b>What it is worth</b></p>") +
+                                ("<ul>" + rows + "</ul>");
+}
+
+QString limits(const json& document) {
+    std::vector<discovery::DetectionLimit> all;
+    for (const auto& one : list_in(document, "detection_limits")) {
+        const auto at = one.find("value");
+        all.push_back({one.value("name", ""), one.value("parameter", ""),
+                       at != one.end() && at->is_number() ? at->get<double>() : std::nan(""), one.value("unit", "")});
+    }
+    const auto text = discovery::limits_text(all);
+    QString rows;
+    for (const auto& one : text.lines) {
+        rows += "<li>" + prose(html(one)).replace("+-", "±") + "</li>";
+    }
+    return rows.isEmpty() ? QString() : "<p>" + html(text.heading) + "</p><ul>" + rows + "</ul>";
 }
 
 }  // namespace
@@ -158,19 +221,15 @@ QString discovery_page(const std::string& text) {
         return "<p>The stored result cannot be read; compute it again (Ctrl+R).</p>";
     }
     const std::string verdict = document.value("verdict", "");
-    QString page;
-    if (verdict == "none") {
-        page += "<h2>Nothing beyond the noise</h2>";
-    } else if (verdict == "effect") {
-        page += "<h2>The model lacks an effect that has a name</h2>";
-    } else if (verdict == "unknown") {
-        page += "<h2>Something real, but no named effect explains it</h2>";
-    }
+    const QString headline = value(document, "headline");
+    QString page = headline.isEmpty() ? QString() : "<h2>" + prose(headline) + "</h2>";
     page += "<p>" + prose(value(document, "sentence")) + "</p>";
-    page += error_line(document.value("error", json()));
+    page += remarks(document, false);
+    page += error_lines(document);
     page += effect_rows(document.value("effects", json()), "evidence", "evidence");
     const QString rivals = effect_rows(document.value("alternatives", json()), "told_apart_by", "told apart by");
     page += rivals.isEmpty() ? "" : "<h3>What else it might be</h3>" + rivals;
+    page += verdict == "none" ? limits(document) : QString();
     const json depends = document.value("depends_on", json::array());
     if (depends.is_array() && !depends.empty()) {
         QString names;
@@ -181,6 +240,7 @@ QString discovery_page(const std::string& text) {
     }
     const QString next = value(document, "next_experiment");
     page += next.isEmpty() ? "" : "<h3>Next experiment</h3><p>" + prose(next) + "</p>";
+    page += remarks(document, true);
     return page;
 }
 
@@ -253,6 +313,10 @@ void DiscoveryPanel::show_measurement() {
         write_->setEnabled(missing);
         page += accepted ? "<p><b>Accepted: the found model counts as the declared one.</b></p>" : "";
         page += verdict ? discovery_page(*found) : QString();
+    } else if (residual != nullptr && verdict) {
+        for (const auto& sentence : list_in(json::parse(*residual, nullptr, false), "sentences")) {
+            page += sentence.is_string() ? "<p>" + prose(html(sentence.get<std::string>())) + "</p>" : QString();
+        }
     } else if (residual == nullptr) {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
     }

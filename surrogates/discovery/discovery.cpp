@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "surrogates/discovery/static/load_cell.h"
+#include "surrogates/discovery/wording.h"
 #include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::discovery {
@@ -194,6 +195,7 @@ void add_particulars(const Discovery& d, nlohmann::json& json) {
 nlohmann::json to_json(const Discovery& d) {
     nlohmann::json json;
     json["verdict"] = d.verdict;
+    json["headline"] = headline(d);
     json["sentence"] = d.sentence;
     json["effects"] = list_of(d.effects);
     json["alternatives"] = list_of(d.alternatives);
@@ -220,7 +222,9 @@ nlohmann::json to_json(const Discovery& d) {
     json["next_experiment_power"] = d.next_power;
     json["problems"] = nlohmann::json::array();
     for (const core::Problem& problem : d.problems) {
-        json["problems"].push_back({{"message", problem.message}, {"place", problem.place.text()}});
+        const bool note = problem.severity == core::Problem::Severity::note;
+        json["problems"].push_back(
+            {{"severity", note ? "note" : "warning"}, {"message", problem.message}, {"place", problem.place.text()}});
     }
     return json;
 }

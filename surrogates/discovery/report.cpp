@@ -36,18 +36,6 @@ std::string with_interval(const ErrorEstimate& e) {
            core::format_number(e.high, digits) + ")";
 }
 
-std::string headline(const Discovery& d) {
-    if (d.verdict == "none") {
-        return d.structure ? "No effect is named" : "Nothing is missing from the model";
-    }
-    if (d.verdict == "unknown") {
-        return "Something is missing that the catalogue does not know: it depends on " + list_of(d.depends_on);
-    }
-    std::string text = verdict_names(d);
-    std::replace(text.begin(), text.end(), '_', ' ');
-    return "The model lacks: " + text;
-}
-
 void add_facts(core::HtmlPage& page, const Discovery& d) {
     std::vector<core::HtmlPage::Fact> facts;
     if (d.effects.empty()) {
@@ -142,7 +130,7 @@ void add_consequence(core::HtmlPage& page, const Consequence& consequence) {
                         gap_text(pair.gap_after)});
     }
     if (!rows.empty()) {
-        page.table({"equilibrium", "", "gap before [mm]", "gap after [mm]"}, rows);
+        page.table({"equilibrium", "kind", "gap before [mm]", "gap after [mm]"}, rows);
     }
     std::map<std::string, std::pair<double, double>> both;
     for (const auto& [name, share] : consequence.region_before) {

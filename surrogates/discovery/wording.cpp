@@ -109,6 +109,46 @@ std::string verdict_names(const Discovery& discovery) {
     return text;
 }
 
+std::string headline(const Discovery& discovery) {
+    if (discovery.verdict == "none") {
+        return discovery.structure ? "No effect is named" : "Nothing is missing from the model";
+    }
+    if (discovery.verdict == "unknown") {
+        return "Something is missing that the catalogue does not know: it depends on " + list_of(discovery.depends_on);
+    }
+    std::string text = verdict_names(discovery);
+    std::replace(text.begin(), text.end(), '_', ' ');
+    return "The model lacks: " + text;
+}
+
+std::string horizon_text(double horizon) {
+    return horizon <= 0 ? "" : std::isinf(horizon) ? " in free run" : " over " + core::format_number(horizon, 3) + " s";
+}
+
+std::string axis_text(const AxisResidual& axis) {
+    return "The model lacks of " + axis.quantity + ": " + core::format_number(axis.rms_before, 3) + " " + axis.unit +
+           " (rms, mean " + core::format_number(axis.mean_before, 3) + "), with what was found " +
+           core::format_number(axis.rms_after, 3) + " " + axis.unit + "; noise in it " +
+           core::format_number(axis.sigma, 2) + " " + axis.unit;
+}
+
+LimitsText limits_text(const std::vector<DetectionLimit>& limits) {
+    constexpr std::size_t most = 6;
+    LimitsText text;
+    for (const DetectionLimit& limit : limits) {
+        if (std::isfinite(limit.value) && text.lines.size() < most) {
+            text.lines.push_back(limit.name + ": " + limit.parameter + " " +
+                                 value_text({limit.parameter, limit.value, 0, limit.unit}));
+        }
+    }
+    if (!text.lines.empty()) {
+        text.heading =
+            "Smallest effects that would stand out of the noise of the fitted data, nine times in ten (all of them in "
+            "the report; to be named an effect must lower the error of held-out data, too):";
+    }
+    return text;
+}
+
 namespace {
 
 std::string settling_text(double chance) {

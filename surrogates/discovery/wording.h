@@ -15,6 +15,9 @@ std::string list_of(const std::vector<std::string>& names);
 /// well tell them apart, "unknown, over gap and speed".
 std::string verdict_names(const Discovery& discovery);
 
+/// The verdict as a heading: "The model lacks: coulomb friction".
+std::string headline(const Discovery& discovery);
+
 /// The verdict for people, one or two sentences.
 std::string verdict_sentence(const Discovery& discovery);
 
@@ -31,6 +34,20 @@ std::string rest_sentence(const Discovery& discovery);
 std::string value_text(const FoundParameter& parameter);
 /// What a number of an effect is called: its name, or of a declared one that is off that: "force.2.factor".
 std::string number_name(const FoundEffect& effect, const FoundParameter& parameter);
+
+/// "", " over 2 s", " in free run": what an error is of.
+std::string horizon_text(double horizon);
+
+/// What a model lacks along one axis of a coupled motion, before and after, as a sentence.
+std::string axis_text(const AxisResidual& axis);
+
+/// The smallest effects that would have been seen: a heading, and a line for each of the first few; empty: none is
+/// known.
+struct LimitsText {
+    std::string heading;
+    std::vector<std::string> lines;
+};
+LimitsText limits_text(const std::vector<DetectionLimit>& limits);
 
 /// "0.87"; "above 0.99" and "below 0.01" where more digits would promise more than anybody knows.
 std::string probability_text(double probability);
