@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -82,6 +83,11 @@ void remark_on_densities(dynamics::Model& model, const Study& study, const Regio
     }
 }
 
+/// Of the points of the table at that place among the forces, in the folder of the model's tables.
+std::string file_of(const TableSpec& table, std::size_t index) {
+    return table.quantity + "-" + std::to_string(index + 1) + ".csv";
+}
+
 /// The model's text with one [[force]] for each table of the study, whose files are named by `place`.
 std::string composed_text(const Study& study, const RegionSpec& spec, const StudyResults& results,
                           const std::string& place) {
@@ -90,7 +96,7 @@ std::string composed_text(const Study& study, const RegionSpec& spec, const Stud
         const TableSpec& table = *study.find_table(spec.forces[i]);
         text += "\n[[force]]                        # the study's table '" + spec.forces[i] +
                 "'\nquantity = " + core::toml_string(table.quantity) +
-                "\ntable = " + core::toml_string(place + table.quantity + "-" + std::to_string(i + 1) + ".csv") + "\n";
+                "\ntable = " + core::toml_string(place + file_of(table, i)) + "\n";
         text += "axes = [";
         for (const auto& axis : table.axes) {
             text += (&axis == &table.axes.front() ? "" : ", ") + core::toml_string(axis);
@@ -107,15 +113,23 @@ std::string composed_text(const Study& study, const RegionSpec& spec, const Stud
 /// The declared model with the study's tables as its forces.
 dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const StudyResults& results,
                                const fs::path& scratch) {
+    std::map<std::string, std::string> tables;  // what is said of a file that nobody has written is said of its table
     for (std::size_t i = 0; i < spec.forces.size(); ++i) {
         const TableSpec& table = *study.find_table(spec.forces[i]);
         core::Table points = table_points(table, results);
         points.comments.push_back("table '" + table.name + "' of the study '" + study.title + "'; " + study.origin);
-        core::write_csv(scratch / (table.quantity + "-" + std::to_string(i + 1) + ".csv"), points);
+        const fs::path file = scratch / file_of(table, i);
+        core::write_csv(file, points);
+        tables[file.string()] = points.source;
     }
     dynamics::Model model =
         dynamics::read_model_text(composed_text(study, spec, results, scratch.string() + "/"), spec.model.string(),
                                   spec.model.has_parent_path() ? spec.model.parent_path() : fs::path("."));
+    for (core::Problem& remark : model.remarks) {
+        if (const auto table = tables.find(remark.place.file); table != tables.end()) {
+            remark.place = {table->second, {}, {}, {}};
+        }
+    }
     remark_on_speeds(model, study, spec, results);
     remark_on_weights(model, study, spec);
     remark_on_densities(model, study, spec, results);
