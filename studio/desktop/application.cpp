@@ -6,7 +6,20 @@
 
 namespace underbody::studio {
 
+namespace {
+
+/// Somebody does something.
+bool is_action(QEvent::Type type) {
+    return type == QEvent::MouseButtonPress || type == QEvent::MouseButtonDblClick || type == QEvent::KeyPress ||
+           type == QEvent::Wheel || type == QEvent::Drop || type == QEvent::Shortcut;
+}
+
+}  // namespace
+
 bool Application::notify(QObject* receiver, QEvent* event) {
+    if (is_action(event->type())) {
+        told_.clear();
+    }
     try {
         return QApplication::notify(receiver, event);
     } catch (...) {

@@ -14,8 +14,8 @@ class Application : public QApplication {
 public:
     using QApplication::QApplication;
 
-    /// Called with what an event threw; the first time that its words come, for a view that fails would fail at each
-    /// repaint.
+    /// Called with what an event threw: once for the same words until somebody does something again, for a view that
+    /// fails would fail at each repaint.
     std::function<void(const std::exception_ptr&)> failed;
 
     /// Of an event that throws: false, as of one that nobody wants.

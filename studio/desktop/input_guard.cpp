@@ -6,8 +6,11 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QComboBox>
+#include <QDropEvent>
 #include <QEvent>
 #include <QKeyEvent>
+#include <QMainWindow>
+#include <QMimeData>
 #include <QPlainTextEdit>
 #include <QScrollBar>
 #include <QTextEdit>
@@ -55,6 +58,16 @@ bool copy_cells(const QAbstractItemView& view) {
     return true;
 }
 
+/// Files on their way to anything but the window: a field would take their names for words.
+bool is_file_on(const QObject* watched, const QEvent* event) {
+    if (event->type() != QEvent::DragEnter && event->type() != QEvent::DragMove && event->type() != QEvent::Drop) {
+        return false;
+    }
+    const auto* widget = qobject_cast<const QWidget*>(watched);
+    return widget != nullptr && !widget->isWindow() && qobject_cast<const QMainWindow*>(widget->window()) != nullptr &&
+           static_cast<const QDropEvent*>(event)->mimeData()->hasUrls();
+}
+
 }  // namespace
 
 InputGuard::InputGuard(QObject* parent) : QObject(parent) { qApp->installEventFilter(this); }
@@ -63,6 +76,10 @@ bool InputGuard::eventFilter(QObject* watched, QEvent* event) {
     if (event->type() == QEvent::KeyPress) {
         const auto* view = qobject_cast<QAbstractItemView*>(watched);
         return view != nullptr && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy) && copy_cells(*view);
+    }
+    if (is_file_on(watched, event)) {
+        event->ignore();  // what holds it is asked next, and at last the window
+        return true;
     }
     if (event->type() != QEvent::Wheel && event->type() != QEvent::Polish) {
         return false;

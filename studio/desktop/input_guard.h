@@ -1,6 +1,6 @@
-// What the wheel, Tab and Ctrl+C on cells do in the whole window. The wheel rolls the list that it is over: it changes
-// a value only where the value has the keyboard. Tab leaves every input: tables and texts keep it for themselves
-// otherwise.
+// What the wheel, Tab, Ctrl+C on cells and dropped files do in the whole window. The wheel rolls the list that it is
+// over: it changes a value only where the value has the keyboard. Tab leaves every input: tables and texts keep it for
+// themselves otherwise. A file is the window's, wherever it falls.
 #pragma once
 
 #include <QObject>

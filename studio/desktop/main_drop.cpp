@@ -37,6 +37,9 @@ void MainWindow::take_files(const std::vector<fs::path>& files) {
                 desk_->act({"workspace", "design"});
             } else if (desk_->act({"add", "field", path.string()})) {
                 fields.push_back("field/" + action::whole_path(path));
+                if (files.size() == 1) {
+                    remember_study(qt(action::whole_path(path)));
+                }
             }
         });
     }

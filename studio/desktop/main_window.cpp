@@ -6,6 +6,7 @@
 #include <QBuffer>
 #include <QCloseEvent>
 #include <QDockWidget>
+#include <QFileInfo>
 #include <QFileSystemWatcher>
 #include <QLabel>
 #include <QLineEdit>
@@ -24,6 +25,7 @@
 #include <QToolButton>
 #include <QUrl>
 #include <algorithm>
+#include <iterator>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -351,11 +353,14 @@ void MainWindow::fill_recent() {
     if (remember_) {
         folders = QSettings().value("recent").toStringList();
         for (const auto& folder : folders) {
-            recent_->addAction(folder, this, [this, folder] { open_study(folder.toStdString()); });
+            recent_->addAction(folder, this, [this, folder] { take_files({folder.toStdString()}); });
         }
     }
     recent_->setEnabled(!recent_->isEmpty());
-    first_->show_recent(folders, pictures_folder());
+    QStringList studies;  // single files stand in the menu alone
+    std::copy_if(folders.begin(), folders.end(), std::back_inserter(studies),
+                 [](const QString& one) { return !QFileInfo(one).isFile(); });
+    first_->show_recent(studies, pictures_folder());
 }
 
 void MainWindow::offer_recovery() {
@@ -420,16 +425,27 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {
     if (event->mimeData()->hasUrls()) {
-        event->acceptProposedAction();
+        event->setDropAction(Qt::CopyAction);  // whatever was proposed: who is told of a move deletes the file
+        event->accept();
     }
 }
 
 void MainWindow::dropEvent(QDropEvent* event) {
     std::vector<fs::path> files;
     for (const auto& url : event->mimeData()->urls()) {
-        files.emplace_back(url.toLocalFile().toStdString());
+        if (url.isLocalFile()) {
+            files.emplace_back(url.toLocalFile().toStdString());
+        }
     }
-    take_files(files);
+    event->setDropAction(Qt::CopyAction);
+    event->accept();
+    guarded("taking what was dropped", [&] {
+        if (files.empty()) {
+            throw core::InputError("missing", "what was dropped is no file of this computer", {},
+                                   "save it first, then drop the file");
+        }
+        take_files(files);
+    });
 }
 
 }  // namespace underbody::studio

@@ -58,8 +58,20 @@ ProblemList::ProblemList(QWidget* parent) : QTreeWidget(parent) {
         clear();
         Q_EMIT counted(count_ = 0);
     });
-    addActions({copy, clear_all});
+    without_notes_ = new QAction("&Warnings and errors only", this);
+    without_notes_->setCheckable(true);
+    connect(without_notes_, &QAction::toggled, this, [this] {
+        for (int i = 0; i < topLevelItemCount(); ++i) {
+            hide_note(*topLevelItem(i));
+        }
+    });
+    addActions({without_notes_, copy, clear_all});
     setContextMenuPolicy(Qt::ActionsContextMenu);
+}
+
+void ProblemList::hide_note(QTreeWidgetItem& item) {
+    const bool note = item.data(0, Qt::UserRole).toInt() == static_cast<int>(core::Problem::Severity::note);
+    item.setHidden(note && without_notes_->isChecked());
 }
 
 void ProblemList::add(const core::Problem& problem, const QString& said_hint) {
@@ -97,6 +109,7 @@ void ProblemList::add(const core::Problem& problem, const QString& said_hint) {
         item->setToolTip(column, whole[column - 1]);
     }
     item->setData(0, Qt::UserRole, static_cast<int>(problem.severity));
+    hide_note(*item);
     if (!hint.isEmpty()) {
         setColumnHidden(3, false);  // until then the sentences have its room
     }
@@ -130,6 +143,7 @@ Banner::Banner(QWidget* parent) : QFrame(parent) {
     icon->setPixmap(style()->standardIcon(QStyle::SP_MessageBoxWarning).pixmap(24, 24));
     row->addWidget(icon, 0, Qt::AlignTop);
     text_ = new QLabel;
+    text_->setObjectName("said");
     text_->setWordWrap(true);
     text_->setTextInteractionFlags(Qt::TextSelectableByMouse);
     row->addWidget(text_, 1);

@@ -25,6 +25,8 @@ Q_SIGNALS:
     void counted(int count);
 
 private:
+    void hide_note(QTreeWidgetItem& item);
+    QAction* without_notes_ = nullptr;
     int count_ = 0;
 };
 

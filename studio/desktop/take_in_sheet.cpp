@@ -10,6 +10,7 @@
 #include <QListWidget>
 #include <QPointer>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QTableWidget>
 #include <algorithm>
 
@@ -71,6 +72,8 @@ QString warnings_of(const postproc::Field& field, const fs::path& study, const s
                 text += "\n" + qt(name + ": " + problem.message);
             }
         }
+        static const QRegularExpression option("then option 'symmetry ([xyz])'");
+        text.replace(option, "then choose 'half, its plane across \\1' below");
     } catch (const core::Error&) {  // said when it is computed, with what the sheet was told
     }
     return text;
