@@ -52,6 +52,18 @@ CasePictures::CasePictures(Desk& desk, QWidget* parent)
 
 QString CasePictures::said() const { return said_->text(); }
 
+Sheet CasePictures::sheet() const {
+    Sheet sheet;
+    sheet.title = views_->currentText();
+    sheet.about = qt(desk_.session().study.title);
+    for (int i = 0; i < list_->count() && shown_of_ != nullptr; ++i) {
+        const std::string& png = *shown_of_->results.picture(shown_[static_cast<std::size_t>(i)]);
+        sheet.cells.emplace_back(list_->item(i)->text(), QImage::fromData(reinterpret_cast<const uchar*>(png.data()),
+                                                                          static_cast<int>(png.size()), "PNG"));
+    }
+    return sheet;
+}
+
 void CasePictures::show_cases(const std::vector<std::string>& names) {
     const Session& session = desk_.session();
     const auto views = case_views(session);

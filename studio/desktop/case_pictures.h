@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "studio/desktop/compare_sheet.h"
 #include "studio/desktop/desk.h"
 
 class QComboBox;
@@ -24,6 +25,8 @@ public:
     [[nodiscard]] QListWidget* list() const { return list_; }
     [[nodiscard]] QComboBox* views() const { return views_; }
     [[nodiscard]] QString said() const;
+    /// The pictures of the list in their full size, each with its case.
+    [[nodiscard]] Sheet sheet() const;
 
 private:
     void ask_icons(const std::vector<std::string>& keys);

@@ -73,6 +73,9 @@ void DesignPanel::build() {
     upper_->addWidget(section_cell_);
     lift_plot_ = new PlotView(this);
     map_plot_ = new PlotView(this);
+    for (auto* plot : {lift_plot_, map_plot_}) {
+        plot->set_least({260, 250});  // title, legend and axis take 130 of it
+    }
     constexpr int room = 800;  // px: narrower ones are all legend
     views->addWidget(upper_);
     lift_or_map_ = new SideBySide(new ViewCell(*this, "lift", "Lift", lift_plot_), "Lift",
@@ -142,7 +145,9 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     card_->verticalHeader()->setDefaultSectionSize(19);
     card_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     card_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
-    card_->horizontalHeader()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
+    for (const int whole : {0, 1}) {  // in bold, too
+        card_->horizontalHeader()->setSectionResizeMode(whole, QHeaderView::ResizeToContents);
+    }
     card_->setMinimumHeight(276);  // all of its rows
     side.addWidget(card_, 2);
     state_label_ = new QLabel;

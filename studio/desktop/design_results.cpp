@@ -29,8 +29,8 @@ struct Result {
     QString (*of)(const LiveBody& body);
 };
 
-QString added(const LiveBody& body, std::size_t k, int digits, const char* unit) {
-    return body.added_mass        ? shown(body.added_mass->matrix[k][k], 1, digits, unit)
+QString added(const LiveBody& body, std::size_t k, double factor, const char* unit) {
+    return body.added_mass        ? shown(body.added_mass->matrix[k][k], factor, 4, unit)
            : body.contact.empty() ? QString("…")
                                   : QString("touches");
 }
@@ -47,9 +47,9 @@ const std::vector<Result>& results() {
          [](const LiveBody& b) {
              return !b.certificate ? QString("…") : b.certificate->passed() ? QString("passed") : QString("FAILED");
          }},
-        {"added mass surge", [](const LiveBody& b) { return added(b, 0, 4, "kg"); }},
-        {"added mass heave", [](const LiveBody& b) { return added(b, 2, 4, "kg"); }},
-        {"added inertia pitch", [](const LiveBody& b) { return added(b, 4, 4, "kg m²"); }},
+        {"added mass surge", [](const LiveBody& b) { return added(b, 0, 1, "kg"); }},
+        {"added mass heave", [](const LiveBody& b) { return added(b, 2, 1, "kg"); }},
+        {"added inertia pitch", [](const LiveBody& b) { return added(b, 4, 1e3, "g m²"); }},
     };
     return all;
 }

@@ -5,6 +5,7 @@
 #include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QPushButton>
 #include <QSignalBlocker>
 #include <QSplitter>
@@ -20,6 +21,7 @@
 #include "core/units.h"
 #include "geometry/body/body_figures.h"
 #include "studio/desktop/case_pictures.h"
+#include "studio/desktop/compare_sheet.h"
 #include "studio/desktop/natural_order.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
@@ -221,8 +223,8 @@ void ExplorePanel::show_axes() {
     std::vector<ParallelView::Axis> axes;
     for (const auto* column : columns_of(rows())) {
         const std::string unit = unit_of(*column);
-        axes.push_back({column->name, qt(axis_title(column->name, unit)), core::convert(1, column->unit, unit),
-                        column->numbers, 0, 1});
+        axes.push_back({column->name, qt(axis_title(column->name, unit)).replace("N m", "N\u00a0m"),
+                        core::convert(1, column->unit, unit), column->numbers, 0, 1});
     }
     parallel_->show_axes(std::move(axes));
 }
@@ -425,11 +427,31 @@ void ExplorePanel::draw_pictures() {
     bodies_->show_figure(geometry::sheet_figure(bodies, "kept" + more), true);
 }
 
-bool ExplorePanel::has_picture() const { return scatter_->has_figure(); }
-void ExplorePanel::export_picture(const std::filesystem::path& path) {
-    const bool bodies = state().explore.shapes && !scatter_->isVisible() && bodies_->has_figure();
-    (bodies ? bodies_ : scatter_)->write(path);
+bool ExplorePanel::has_picture() const {
+    return (scatter_->isVisible() && scatter_->has_figure()) || (bodies_->isVisible() && bodies_->has_figure()) ||
+           (cases_->isVisible() && cases_->list()->count() > 0) || parallel_->isVisible();
 }
+
+/// What is seen: of points and pictures beside each other the one that was asked for last, else the lines.
+void ExplorePanel::export_picture(const std::filesystem::path& path) {
+    const bool points = scatter_->isVisible() && scatter_->has_figure();
+    const bool bodies = bodies_->isVisible() && bodies_->has_figure();
+    const bool cases = cases_->isVisible() && cases_->list()->count() > 0;
+    if (points && !(state().explore.pictures && (bodies || cases))) {
+        scatter_->write(path);
+    } else if (bodies) {
+        bodies_->write(path);
+    } else if (cases) {
+        write_sheet(cases_->sheet(), path);
+    } else {
+        Sheet lines;
+        lines.title = count_->text();
+        lines.about = qt(session().study.title);
+        lines.cells = {{QString(), parallel_->grab().toImage()}};
+        write_sheet(lines, path);
+    }
+}
+
 void ExplorePanel::export_table(const std::filesystem::path& path) { core::write_csv(path, rows().selected(kept_)); }
 
 }  // namespace underbody::studio

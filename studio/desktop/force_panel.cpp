@@ -50,7 +50,7 @@ void ForcePanel::build() {
     auto* all = new QHBoxLayout(this);
     auto* left = new QVBoxLayout;
     auto* controls = new QWidget;
-    controls->setFixedWidth(340);
+    controls->setFixedWidth(390);  // the slider of the net weight is long enough to choose with
     controls->setLayout(left);
     all->addWidget(controls, 0);
     auto* form = new QFormLayout;
