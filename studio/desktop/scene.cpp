@@ -247,13 +247,10 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
         Parts::Surface surface;
         surface.zone = ready.zone;
         surface.whole = ready.stand_in ? ready.surface : nullptr;
-        surface.whole_mirrored = ready.stand_in ? ready.mirrored : nullptr;
         surface.mapper = new_mapper(p.colours);
         surface.mapper->SetInputData(ready.stand_in ? ready.stand_in : ready.surface);
         surface.mirrored_mapper = new_mapper(p.colours);
-        if (ready.mirrored) {
-            surface.mirrored_mapper->SetInputData(ready.stand_in ? ready.stand_in_mirrored : ready.mirrored);
-        }
+        surface.mirrored_mapper->SetInputData(surface.mapper->GetInput());
         surface.actor = vtkSmartPointer<vtkActor>::New();
         surface.actor->SetMapper(surface.mapper);
         surface.actor->GetProperty()->SetColor(0.72, 0.76, 0.8);
@@ -263,13 +260,15 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
         surface.mirrored->SetMapper(surface.mirrored_mapper);
         surface.mirrored->SetProperty(surface.actor->GetProperty());
         surface.mirrored->SetVisibility(false);
+        if (p.mirror.is_half()) {
+            reflect(*surface.mirrored, p.mirror);
+        }
         p.renderer->AddActor(surface.actor);
         p.renderer->AddActor(surface.mirrored);
         p.picker->AddPickList(surface.actor);
+        p.picker->AddPickList(surface.mirrored);
         if (ready.locator) {
-            p.picker->AddLocator(ready.locator);
-        } else {
-            p.picker->AddPickList(surface.mirrored);  // a mirrored side of many faces has no locator: it is not asked
+            p.picker->AddLocator(ready.locator);  // of both sides
         }
         p.surfaces.push_back(std::move(surface));
     }

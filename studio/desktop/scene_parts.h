@@ -33,9 +33,9 @@ struct Scene::Prepared {
     postproc::MirrorPlane mirror;
     struct Surface {
         std::size_t zone = 0;
-        vtkSmartPointer<vtkPolyData> surface, mirrored;
-        vtkSmartPointer<vtkPolyData> stand_in, stand_in_mirrored;  ///< of many faces: what is turned
-        vtkSmartPointer<vtkStaticCellLocator> locator;             ///< of many faces: a click need not go through all
+        vtkSmartPointer<vtkPolyData> surface;
+        vtkSmartPointer<vtkPolyData> stand_in;          ///< of many faces: what is turned
+        vtkSmartPointer<vtkStaticCellLocator> locator;  ///< of many faces: a click need not go through all
     };
     std::vector<Surface> surfaces;
 };
@@ -56,7 +56,7 @@ struct Scene::Parts : QObject {
         vtkSmartPointer<vtkActor> actor;
         vtkSmartPointer<vtkPolyDataMapper> mirrored_mapper;
         vtkSmartPointer<vtkActor> mirrored;
-        vtkSmartPointer<vtkPolyData> whole, whole_mirrored;  ///< of many faces, for which the mappers draw a stand-in
+        vtkSmartPointer<vtkPolyData> whole;  ///< of many faces, for which the mappers draw a stand-in
     };
     std::vector<Surface> surfaces;
     std::vector<bool> seen;

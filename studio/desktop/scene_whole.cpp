@@ -21,23 +21,21 @@ WholePicture::Wanted Scene::Parts::wanted_whole() const {
     const int* size = window->GetSize();
     wanted.width = size[0];
     wanted.height = size[1];
-    const auto add = [&](vtkPolyData* faces, vtkActor& actor, vtkPolyDataMapper& mapper) {
-        auto look = vtkSmartPointer<vtkProperty>::New();
-        look->DeepCopy(actor.GetProperty());
-        wanted.surfaces.push_back({faces, look,
-                                   mapper.GetScalarVisibility() != 0 && mapper.GetArrayName() != nullptr
-                                       ? std::string(mapper.GetArrayName())
-                                       : std::string(),
-                                   mapper.GetScalarMode()});
-    };
     for (const auto& surface : surfaces) {
-        const bool all = surface.whole != nullptr;
-        if (visible(surface)) {
-            add(all ? surface.whole.Get() : surface.mapper->GetInput(), *surface.actor, *surface.mapper);
+        if (!visible(surface)) {
+            continue;
         }
-        if (visible(surface) && mirrored && mirror.is_half()) {
-            add(all ? surface.whole_mirrored.Get() : surface.mirrored_mapper->GetInput(), *surface.mirrored,
-                *surface.mirrored_mapper);
+        auto look = vtkSmartPointer<vtkProperty>::New();
+        look->DeepCopy(surface.actor->GetProperty());
+        const auto add = [&](vtkPolyDataMapper& mapper, const postproc::MirrorPlane& in) {
+            const bool coloured = mapper.GetScalarVisibility() != 0 && mapper.GetArrayName() != nullptr;
+            wanted.surfaces.push_back({surface.whole ? surface.whole.Get() : surface.mapper->GetInput(), look,
+                                       coloured ? std::string(mapper.GetArrayName()) : std::string(),
+                                       mapper.GetScalarMode(), in});
+        };
+        add(*surface.mapper, {});
+        if (mirrored && mirror.is_half()) {
+            add(*surface.mirrored_mapper, mirror);
         }
     }
     return wanted;

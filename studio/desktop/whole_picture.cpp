@@ -6,6 +6,7 @@
 #include <vtkPolyDataMapper.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkShaderProperty.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <QtConcurrent>
@@ -14,6 +15,27 @@
 #include "core/virtual_display.h"
 
 namespace underbody::studio {
+
+namespace {
+
+/// Lit from the side that is seen. By itself VTK asks which way round the corners of a face stand, and in a mirror they
+/// stand the other way round.
+void light_what_is_seen(vtkActor& actor) {
+    actor.GetShaderProperty()->AddFragmentShaderReplacement(
+        "//VTK::Normal::Impl", true,
+        "//VTK::Normal::Impl\n  if (normalVCVSOutput.z < 0.0) { normalVCVSOutput = -normalVCVSOutput; }\n", false);
+}
+
+}  // namespace
+
+void reflect(vtkActor& actor, const postproc::MirrorPlane& mirror) {
+    std::array<double, 3> size = {1, 1, 1}, shift = {0, 0, 0};
+    size[static_cast<std::size_t>(mirror.axis)] = -1;
+    shift[static_cast<std::size_t>(mirror.axis)] = 2 * mirror.at.value_or(0);
+    actor.SetScale(size.data());
+    actor.SetPosition(shift.data());
+    light_what_is_seen(actor);
+}
 
 std::string WholePicture::Wanted::key() const {
     std::ostringstream text;
@@ -38,7 +60,7 @@ std::string WholePicture::Wanted::key() const {
         text << '\n'
              << static_cast<const void*>(surface.faces.Get()) << ' ' << surface.coloured_by << ' '
              << surface.scalar_mode << ' ' << surface.look->GetEdgeVisibility() << ' ' << surface.look->GetOpacity()
-             << ' ';
+             << ' ' << surface.seen.axis << ' ' << surface.seen.at.value_or(0) << ' ';
         add(surface.look->GetColor(), 3);
     }
     return text.str();
@@ -65,7 +87,7 @@ public:
         renderer_->SetActiveCamera(wanted.camera);
         std::vector<Drawn> drawn;
         for (const auto& surface : wanted.surfaces) {
-            drawn.push_back(of(surface, wanted.colours));
+            drawn.push_back(of(surface, wanted.colours, drawn));
         }
         renderer_->RemoveAllViewProps();
         for (const auto& one : drawn) {
@@ -87,14 +109,31 @@ private:
     struct Drawn {
         vtkSmartPointer<vtkPolyData> faces;
         vtkSmartPointer<vtkActor> actor;
+        bool mirrored = false;
+        std::string coloured_by;
     };
 
-    Drawn of(const Wanted::Surface& surface, vtkLookupTable* colours) {
-        Drawn drawn{surface.faces, nullptr};
+    /// `drawn`: what the picture has already: a side and its mirrored one are made of the same.
+    Drawn of(const Wanted::Surface& surface, vtkLookupTable* colours, const std::vector<Drawn>& drawn) const {
+        Drawn made{surface.faces, nullptr, surface.seen.is_half(), surface.coloured_by};
         for (const auto& known : drawn_) {
-            drawn.actor = known.faces == surface.faces ? known.actor : drawn.actor;
+            const bool same = known.faces == made.faces && known.mirrored == made.mirrored;
+            made.actor = same && known.coloured_by == made.coloured_by ? known.actor : made.actor;
         }
-        if (!drawn.actor) {
+        if (!made.actor) {
+            made.actor = vtkSmartPointer<vtkActor>::New();
+            if (made.mirrored) {
+                reflect(*made.actor, surface.seen);
+            } else {
+                light_what_is_seen(*made.actor);  // the two sides share a mapper, and with it a program
+            }
+        }
+        for (const auto& other : drawn) {
+            if (other.faces == made.faces && other.coloured_by == surface.coloured_by) {
+                made.actor->SetMapper(other.actor->GetMapper());
+            }
+        }
+        if (made.actor->GetMapper() == nullptr) {
             // Of its own: what VTK notes in a surface that it draws, it does not note in one that is clicked on.
             vtkNew<vtkPolyData> own;
             own->ShallowCopy(surface.faces);
@@ -102,18 +141,17 @@ private:
             mapper->SetInputData(own);
             mapper->UseLookupTableScalarRangeOn();
             mapper->InterpolateScalarsBeforeMappingOn();
-            drawn.actor = vtkSmartPointer<vtkActor>::New();
-            drawn.actor->SetMapper(mapper);
+            made.actor->SetMapper(mapper);
         }
-        auto* mapper = drawn.actor->GetMapper();
+        auto* mapper = made.actor->GetMapper();
         mapper->SetLookupTable(colours);
         mapper->SetScalarVisibility(!surface.coloured_by.empty());
         if (!surface.coloured_by.empty()) {
             mapper->SetScalarMode(surface.scalar_mode);
             mapper->SelectColorArray(surface.coloured_by.c_str());
         }
-        drawn.actor->SetProperty(surface.look);
-        return drawn;
+        made.actor->SetProperty(surface.look);
+        return made;
     }
 
     vtkSmartPointer<vtkRenderWindow> window_;

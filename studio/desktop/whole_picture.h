@@ -1,6 +1,7 @@
 // All faces of a surface that has too many for the window's thread, drawn on a thread of its own.
 #pragma once
 
+#include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkImageData.h>
 #include <vtkLookupTable.h>
@@ -17,7 +18,13 @@
 #include <string>
 #include <vector>
 
+#include "postproc/loads/mirror_plane.h"
+
 namespace underbody::studio {
+
+/// Makes an actor show its surface as a mirror shows it, its faces lit from the side that is seen. Nothing of the
+/// surface is copied.
+void reflect(vtkActor& actor, const postproc::MirrorPlane& mirror);
 
 class WholePicture : public QObject {
 public:
@@ -26,8 +33,9 @@ public:
         struct Surface {
             vtkSmartPointer<vtkPolyData> faces;
             vtkSmartPointer<vtkProperty> look;
-            std::string coloured_by;  ///< an array's name; empty: plain
-            int scalar_mode = 0;      ///< of VTK's mapper: on points or faces
+            std::string coloured_by;     ///< an array's name; empty: plain
+            int scalar_mode = 0;         ///< of VTK's mapper: on points or faces
+            postproc::MirrorPlane seen;  ///< in this mirror; none: as it is
         };
         std::vector<Surface> surfaces;
         vtkSmartPointer<vtkCamera> camera;

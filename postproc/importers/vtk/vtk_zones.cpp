@@ -196,6 +196,11 @@ void go_round_corners(vtkUnstructuredGrid& grid) {
 
 /// Grids may hold faces too: 0 empty or of points and lines, 2 faces alone, 3 anything else.
 int dimension_of(vtkDataSet& data) {
+    if (auto* surface = vtkPolyData::SafeDownCast(&data)) {  // asked for a type, it would note that of every face
+        const bool others = surface->GetNumberOfVerts() + surface->GetNumberOfLines() > 0;
+        const bool faces = surface->GetNumberOfPolys() > 0;
+        return surface->GetNumberOfStrips() > 0 || (faces && others) ? 3 : faces ? 2 : 0;
+    }
     int most = 0;
     for (vtkIdType c = 0; c < data.GetNumberOfCells() && most < 3; ++c) {
         switch (data.GetCellType(c)) {
