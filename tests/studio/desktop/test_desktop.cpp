@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <QImage>
+#include <QRegularExpression>
+#include <QStringList>
 #include <QXmlStreamReader>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -170,6 +172,44 @@ TEST(Desktop, ComparesByDifferences) {
     const QImage differences = picture(folder.path() / "differences" / "compare.png");
     EXPECT_GT(difference(fields, differences), 0.03);
     EXPECT_GT(colours(differences), 200U);
+}
+
+// What a reader of the first report missed or stumbled over (README.md beside this file).
+TEST(Report, HasWhatAReaderMissed) {
+    const core::TemporaryFolder folder;
+    test::make_few_gaps(folder.path());
+    core::write_file(folder.path() / "study.toml", core::read_file(folder.path() / "study.toml") +
+                                                       "\n[[picture]]\nname = \"level\"\nwhere = { gap = \"5mm\" }\n"
+                                                       "views = [\"pressure-underbody\"]\n");
+    const auto run = test::run_underbody(
+        {"study", "run", folder.path().string(), "--report", (folder.path() / "out" / "index.html").string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const QString page = QString::fromStdString(core::read_file(folder.path() / "out" / "index.html"));
+    const auto all = [&page](const char* pattern) {
+        QStringList found;
+        auto matches = QRegularExpression(pattern, QRegularExpression::DotMatchesEverythingOption).globalMatch(page);
+        while (matches.hasNext()) {
+            found << matches.next().captured(1);
+        }
+        return found;
+    };
+    const QStringList heads = all("<th[^>]*>(.*?)</th>");
+    EXPECT_FALSE(heads.isEmpty());
+    EXPECT_FALSE(heads.contains("")) << "each column has its heading";
+    for (const char* head : {"kind", "variant", "gap (mm)", "lift (N)", "drag (N)", "± (N)"}) {
+        EXPECT_TRUE(heads.contains(head)) << head << " in " << heads.join('|').toStdString();
+    }
+    const QStringList captions = all("<figcaption>(.*?)</figcaption>");
+    EXPECT_EQ(captions.filter("ellipse-h5-p0").size(), 1) << captions.join('\n').toStdString();
+    for (int i = 0; i < captions.size(); ++i) {
+        EXPECT_EQ(captions.count(captions[i]), 1) << captions[i].toStdString();
+    }
+    EXPECT_TRUE(all("<summary>(.*?)</summary>").contains("How it was fitted"));
+    for (const auto& facts : all("<div class=\"facts(.*?)</div></div>")) {
+        const int count = facts.count("class=\"value\"");
+        const int row = facts.startsWith(" of") ? facts.mid(3, 1).toInt() : count;
+        EXPECT_TRUE(count <= row || count % row != 1) << count << " in rows of " << row;
+    }
 }
 
 // What the entry of the menu says it opens is declared as a type of file, and the AppStream page names the same.

@@ -4,6 +4,8 @@
 #include "surrogates/dynamics/basin/region.h"
 // clang-format on
 
+#include <qcustomplot.h>
+
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHeaderView>
@@ -22,6 +24,7 @@
 #include "studio/desktop/case_pictures.h"
 #include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/compare_sheet.h"
+#include "studio/desktop/design_panel.h"
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/pictures_panel.h"
@@ -131,6 +134,26 @@ TEST_F(Window, PicturesOfTheKeptCasesStandBesideEachOther) {
     pictures.list()->setCurrentRow(1);
     ASSERT_EQ(window_->desk().state().selected("case").size(), 1U);
     EXPECT_EQ(window_->desk().state().selected("case").front(), pictures.list()->item(1)->text().toStdString());
+    // What is exported is what is seen, not the points that are hidden.
+    const auto exported = [&](const std::string& name) {
+        panel<ExplorePanel>().export_picture(folder_.path() / name);
+        return QImage(QString::fromStdString((folder_.path() / name).string()));
+    };
+    act("cells explore table pictures");
+    settle(*window_);
+    EXPECT_EQ(exported("pictures.png").text("Title"), "pressure-underbody");
+    act("cells explore lines");
+    settle(*window_);
+    EXPECT_TRUE(panel<ExplorePanel>().has_picture());
+    EXPECT_EQ(exported("lines.png").text("Title"), "3 of 5 cases");
+    act("cells explore table points");
+    settle(*window_);
+    EXPECT_TRUE(exported("points.png").text("Title").isEmpty()) << "a figure";
+    act("cells explore table");
+    settle(*window_);
+    EXPECT_FALSE(panel<ExplorePanel>().has_picture());
+    act("cells explore lines table points pictures");
+    settle(*window_);
     act("show pictures pressure-underbdy");
     EXPECT_NE(window_->last_error().indexOf("pressure-underbody"), -1) << window_->last_error().toStdString();
     act("show points");
@@ -326,6 +349,21 @@ TEST_F(Window, AStaleExportIsSaidAndMadeAgain) {
 // In a small window plots keep room to be read.
 TEST_F(Window, PlotsKeepTheirRoomInASmallWindow) {
     open(computed_study());
+    for (const QSize small : {QSize(1100, 700), QSize(900, 600), QSize(800, 500)}) {
+        window_->resize(small);
+        act("workspace design");
+        settle(*window_);
+        int plots = 0;
+        for (auto* plot : panel<DesignPanel>().findChildren<PlotView*>()) {
+            auto* drawn = plot->findChild<QCustomPlot*>();
+            if (plot->isVisible() && plot->has_figure() && !plot->figure().equal_scales) {
+                drawn->replot();
+                EXPECT_GE(drawn->axisRect()->height(), 100) << small.width() << ": between the axes of the lift";
+                ++plots;
+            }
+        }
+        EXPECT_EQ(plots, 1) << small.width();
+    }
     window_->resize(900, 600);
     for (const auto& name : workspace_names()) {
         act("workspace " + name);

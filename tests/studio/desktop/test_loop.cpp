@@ -1,16 +1,29 @@
 // Loop: measurements and logs that are dropped on the window, from the file to the verdict and what is made of it.
+// First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
+// clang-format off
+#include "surrogates/discovery/wording.h"
+// clang-format on
+
 #include <QComboBox>
+#include <QDropEvent>
+#include <QLabel>
 #include <QLineEdit>
+#include <QMimeData>
 #include <QPushButton>
 #include <QTextBrowser>
+#include <QUrl>
+#include <QWindow>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cases/add_measurement.h"
 #include "core/text.h"
 #include "studio/desktop/desk.h"
 #include "studio/desktop/discovery_panel.h"
+#include "studio/desktop/fields_panel.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/measurement_sheet.h"
+#include "studio/desktop/take_in_sheet.h"
 #include "surrogates/discovery/run_split.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -180,6 +193,36 @@ TEST(DiscoveryPage, SaysWhichDataTheErrorIsOf) {
     EXPECT_EQ(fitted.find("held"), std::string::npos) << fitted;
 }
 
+// What the command line says of a verdict stands in the window, in the same words and beside the number it is about.
+TEST(DiscoveryPage, SaysWhatTheCommandSays) {
+    using Severity = core::Problem::Severity;
+    discovery::Discovery found;
+    found.verdict = "none";
+    found.structure = true;
+    found.gate = 0.001;
+    found.motion = "heave_pitch";
+    found.held_out = "2 of 8 runs";
+    found.error = {{"gap", "m", 2, {0.002, 0.001, 0.003, 8}, {0.002, 0.001, 0.003, 8}, 0.0002},
+                   {"pitch", "rad", INFINITY, {0.02, 0.01, 0.03, 8}, {0.01, 0.01, 0.03, 8}, 0.001}};
+    found.axes = {{"pitch_moment", "N m", 2e-4, 3e-4, 0, 5e-5, 4e-5}};
+    found.limits = {{"coulomb_friction", "force", 0.004, "N"}};
+    found.sentence = discovery::verdict_sentence(found);
+    found.next_experiment = discovery::experiment_text("to see more", "steps of 50 mN", 0.01);
+    found.problems = {{Severity::warning, "run-03 is left out: it has hardly any gap readings", {}},
+                      {Severity::warning, "input_moment was not measured and is taken as zero", {}},
+                      {Severity::note, "the pitch is held", {}}};
+    const QString page = discovery_page(discovery::to_json(found).dump());
+    for (const char* words :
+         {"No effect is named", "is taken as zero", "run-03 is left out", "the pitch is held",
+          "Error of gap over 2 s on held-out data (2 of 8 runs): <b>2 (1 … 3)</b> mm", "Error of pitch in free run",
+          "noise 20 → 10", "The model lacks of pitch moment: 0.0003 N m", "coulomb friction: force", "4 mN",
+          "no experiment of this kind on this rig settles it"}) {
+        EXPECT_TRUE(page.contains(words)) << words << "\n" << page.toStdString();
+    }
+    EXPECT_LT(page.indexOf("taken as zero"), page.indexOf("Error of gap")) << "before the number that it is about";
+    EXPECT_GT(page.indexOf("the pitch is held"), page.indexOf("no experiment of this kind"));
+}
+
 // Without a study there is no model to judge by: a sentence, and no sheet.
 TEST_F(Dropped, ALogWithoutAStudyIsASentence) {
     write_flight(folder_.path() / "flight.csv");
@@ -239,6 +282,69 @@ TEST_F(Dropped, ADamagedLogSaysWhy) {
     ASSERT_NE(sheet, nullptr);
     EXPECT_FALSE(sheet->wrong().isEmpty());
     EXPECT_NE(sheet->wrong(), "looking at the data");
+}
+
+// As a file manager drops: events of the system's window, which finds what is under the mouse. Nothing that is there
+// keeps a file for itself.
+TEST_F(Dropped, FilesAreTakenWhereverTheyFall) {
+    open(computed_study());
+    const fs::path fields = test::source_folder() / "cases" / "evie" / "fields";
+    const auto fall = [&](const std::vector<fs::path>& files, QWidget* on) {
+        QMimeData data;
+        QList<QUrl> urls;
+        QString text;
+        for (const auto& file : files) {
+            urls << QUrl::fromLocalFile(QString::fromStdString(file.string()));
+            text += QString::fromStdString(file.string()) + "\n";
+        }
+        data.setUrls(urls);
+        data.setText(text);  // file managers say it in words, too
+        ASSERT_TRUE(on->isVisible());
+        const QPoint at = on->mapTo(window_.get(), on->rect().center());
+        QDragEnterEvent enter(at, Qt::CopyAction | Qt::MoveAction, &data, Qt::LeftButton, Qt::ShiftModifier);
+        QApplication::sendEvent(window_->windowHandle(), &enter);
+        EXPECT_TRUE(enter.isAccepted());
+        QDragMoveEvent move(at, Qt::CopyAction | Qt::MoveAction, &data, Qt::LeftButton, Qt::ShiftModifier);
+        QApplication::sendEvent(window_->windowHandle(), &move);
+        EXPECT_TRUE(move.isAccepted());
+        QDropEvent drop(at, Qt::CopyAction | Qt::MoveAction, &data, Qt::LeftButton, Qt::ShiftModifier);
+        QApplication::sendEvent(window_->windowHandle(), &drop);
+        EXPECT_TRUE(drop.isAccepted());
+        EXPECT_EQ(drop.dropAction(), Qt::CopyAction) << "a file manager would delete what was moved";
+        settle(*window_);
+    };
+    QLineEdit* filter = nullptr;
+    for (auto* edit : window_->findChildren<QLineEdit*>()) {
+        filter = edit->accessibleName() == "Filter the study" ? edit : filter;
+    }
+    ASSERT_NE(filter, nullptr);
+    fall({fields / "ellipse-h2-p0.csv"}, filter);
+    EXPECT_EQ(filter->text(), "") << "no text falls into a field";
+    EXPECT_EQ(window_->desk().state().workspace, "compare");
+    EXPECT_EQ(panel<FieldsPanel>().drawn(), 1U);
+
+    core::write_file(folder_.path() / "damaged.csv", "[Name]\nbase\n[Data]\nX [ m ],Y [ m ]\n1,2,3\n");
+    fall({fields / "ellipse-h3-p0.csv", folder_.path() / "damaged.csv", fields / "ellipse-h20-p0.csv"},
+         &panel<FieldsPanel>());
+    EXPECT_EQ(panel<FieldsPanel>().drawn(), 2U);
+    EXPECT_TRUE(panel<FieldsPanel>().failed(1).contains("damaged.csv")) << panel<FieldsPanel>().failed(1).toStdString();
+
+    fs::create_directories(folder_.path() / "run7");
+    fs::copy_file(fields / "ellipse-h2-p0.csv", folder_.path() / "run7" / "run7_h2mm_p0.csv");
+    fs::copy_file(fields / "ellipse-h3-p0.csv", folder_.path() / "run7" / "run7_h3mm_p0.csv");
+    fall({folder_.path() / "run7"}, window_->findChild<StudyTree*>()->viewport());
+    auto* sheet = window_->findChild<TakeInSheet*>();
+    ASSERT_NE(sheet, nullptr);
+    const auto labels = sheet->findChildren<QLabel*>();
+    EXPECT_TRUE(std::any_of(labels.begin(), labels.end(), [](const QLabel* label) {
+        return label->text().contains("a half model? then choose 'half, its plane across y' below");
+    })) << "what the sheet calls it, not the command";
+    sheet->reject();
+    settle(*window_);
+
+    write_flight(folder_.path() / "flight.csv");
+    fall({folder_.path() / "flight.csv"}, window_->findChild<ProblemList*>()->viewport());
+    EXPECT_NE(window_->findChild<MeasurementSheet*>(), nullptr);
 }
 
 }  // namespace

@@ -15,7 +15,9 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMenuBar>
+#include <QSettings>
 #include <QSlider>
+#include <QStandardPaths>
 #include <QTableWidget>
 #include <QTest>
 #include <cmath>
@@ -26,9 +28,11 @@
 
 #include "core/text.h"
 #include "geometry/body/body_report.h"
+#include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/export_dialog.h"
+#include "studio/desktop/fields_panel.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/parameter_row.h"
@@ -128,6 +132,14 @@ TEST_F(Window, ShowsTheBodyOfTheLibraryAndUndoBringsItBack) {
     };
     EXPECT_TRUE(card("lift (nearest)").endsWith("N")) << card("lift (nearest)").toStdString();
     EXPECT_TRUE(card("stable gaps (nearest)").endsWith("mm")) << card("stable gaps (nearest)").toStdString();
+    for (int row = 0; row < design.card()->rowCount(); ++row) {
+        for (int column = 0; column < 3; ++column) {
+            const auto* item = design.card()->item(row, column);
+            EXPECT_LE(QFontMetrics(item->font()).horizontalAdvance(item->text()),
+                      design.card()->columnWidth(column) - 6)
+                << item->text().toStdString() << " is cut";
+        }
+    }
     const auto with_before = [&] {
         const auto plots = design.findChildren<PlotView*>();
         return std::count_if(plots.begin(), plots.end(), [](const PlotView* plot) {
@@ -239,6 +251,69 @@ TEST_F(Window, AReloadReadsWhatChangedOnDisk) {
     EXPECT_EQ(status_of("ellipse-h3-p0"), was);
 }
 
+// Also of what is drawn; and before anybody asks, the window says that a file is another one.
+TEST_F(Window, AFileThatChangesIsSaidAndShownAnew) {
+    const fs::path study = copy_of_study();
+    open(study);
+    act("select case/ellipse-h5-p0");
+    act("workspace compare");
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    ASSERT_EQ(fields.drawn(), 1U);
+    const auto lift = [&] { return fields.numbers()->forces()->item(0, 0)->text(); };
+    const QString before = lift();
+    auto* banner = window_->findChild<Banner*>();
+    EXPECT_FALSE(banner->isVisible());
+    fs::copy_file(study / "fields" / "ellipse-h20-p0.csv", study / "fields" / "ellipse-h5-p0.csv",
+                  fs::copy_options::overwrite_existing);
+    QTRY_VERIFY_WITH_TIMEOUT(banner->isVisible(), 20000);
+    EXPECT_TRUE(banner->findChild<QLabel*>("said")->text().contains("has changed on disk"));
+    window_->desk().reload();
+    settle(*window_);
+    EXPECT_NE(lift(), before);
+}
+
+TEST_F(Window, AFileFromOutsideIsAmongTheRecentOnes) {
+    QStandardPaths::setTestModeEnabled(true);
+    QCoreApplication::setOrganizationName("underbody-test");
+    QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, QString::fromStdString(folder_.path().string()));
+    const fs::path file = computed_study() / "fields" / "ellipse-h5-p0.csv";
+    const auto recent = [&] {
+        MainWindow other(true);
+        other.ask = [](const QString&, const QString&, const QString&) { return false; };
+        QStringList names;
+        for (const auto* menu : other.findChildren<QMenu*>()) {
+            for (const auto* action : menu->title().contains("ecent") ? menu->actions() : QList<QAction*>()) {
+                names << action->text();
+            }
+        }
+        other.take_files({file});
+        settle(other);
+        return names;
+    };
+    EXPECT_FALSE(recent().contains(QString::fromStdString(file.string())));
+    EXPECT_TRUE(recent().contains(QString::fromStdString(file.string())));
+    QCoreApplication::setOrganizationName("");
+    QStandardPaths::setTestModeEnabled(false);
+}
+
+TEST_F(Window, NotesAreHiddenFromTheProblems) {
+    auto& problems = panel<ProblemList>();
+    problems.clear();
+    problems.note("only told");
+    problems.add({core::Problem::Severity::warning, "a warning", {}});
+    QAction* only = problems.actions().front();
+    only->setChecked(true);
+    problems.note("told later");
+    QStringList seen;
+    for (int i = 0; i < problems.topLevelItemCount(); ++i) {
+        seen << (problems.topLevelItem(i)->isHidden() ? QString() : problems.topLevelItem(i)->text(1));
+    }
+    EXPECT_EQ(seen, (QStringList{"", "a warning", ""}));
+    only->setChecked(false);
+    EXPECT_FALSE(problems.topLevelItem(0)->isHidden());
+}
+
 TEST_F(Window, NothingIsOverwrittenUnasked) {
     const fs::path file = folder_.path() / "t.csv";
     core::write_file(file, "mine");
@@ -318,6 +393,51 @@ TEST_F(Window, AProblemThatIsFoundAgainStandsThereOnce) {
     EXPECT_EQ(list->topLevelItemCount(), before + 1);
     list->add({core::Problem::Severity::warning, "the turn is not supported", {"b.csv", {}, {}, {}}});
     EXPECT_EQ(list->topLevelItemCount(), before + 2) << "in another file it is another one";
+}
+
+// Tables and Stability rest on the same points: what is said of them is said once, of the table that the study names.
+TEST_F(Window, WhatIsSaidOfATableIsSaidOnceAndByItsName) {
+    const fs::path study = copy_of_study();
+    std::string text = core::read_file(study / "study.toml");
+    text.insert(text.find("net_weight"), "relative_sigma = 0.1\n");
+    core::write_file(study / "study.toml", text);
+    open(study);
+    for (const char* workspace : {"tables", "stability"}) {
+        act(std::string("workspace ") + workspace);
+        settle(*window_);
+    }
+    const QString said = panel<ProblemList>().text();
+    EXPECT_EQ(said.count("the turn at gap"), 1) << said.toStdString();
+    EXPECT_EQ(said.count("lift_force-1.csv"), 0) << said.toStdString();
+    EXPECT_EQ(said.count("\ttable 'lift'\t"), 1) << said.toStdString();
+}
+
+// A view that fails at each repaint is told once; the same after somebody did something is told again.
+TEST_F(Window, ADefectIsToldAgainAfterAnotherAction) {
+    struct Failing : QObject {
+        bool event(QEvent*) override { throw std::runtime_error("no such view"); }
+    } failing;
+    std::vector<std::string> told;
+    auto& program = application();
+    const auto before = std::exchange(
+        program.failed, [&](const std::exception_ptr& error) { told.push_back(tell(error).message.toStdString()); });
+    const auto repaint = [&] {
+        QEvent event(QEvent::User);
+        QCoreApplication::sendEvent(&failing, &event);
+    };
+    QTest::keyClick(window_.get(), Qt::Key_Shift);
+    repaint();
+    repaint();
+    EXPECT_EQ(told.size(), 1U);
+    QTest::keyClick(window_.get(), Qt::Key_Shift);
+    repaint();
+    repaint();
+    EXPECT_EQ(told.size(), 2U);
+    QTest::mouseClick(window_->findChild<ProblemList*>()->viewport(), Qt::LeftButton);
+    repaint();
+    ASSERT_EQ(told.size(), 3U);
+    EXPECT_EQ(told.back(), "defect of the program: no such view");
+    program.failed = before;
 }
 
 TEST_F(Window, AnErrorGoesWhenSomethingSucceeds) {
@@ -431,6 +551,18 @@ TEST_F(Window, AWeightOutOfReachIsSaid) {
         said = said || label->text().contains("No equilibrium");
     }
     EXPECT_TRUE(said);
+    // Each table keeps what was said of it, and the slider is long enough to choose a weight with.
+    act("table lift net_weight=0.25N");
+    EXPECT_EQ(window_->desk().state().tables.at("lift").net_weight, 0.25);
+    act("workspace explore");
+    act("workspace tables");
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().tables.at("lift").net_weight, 0.25);
+    int longest = 0;
+    for (const auto* slider : panel<ForcePanel>().findChildren<QSlider*>()) {
+        longest = std::max(longest, slider->width());
+    }
+    EXPECT_GE(longest, 120);
 }
 
 TEST_F(Window, AnExportIsShownProvedAndWritten) {

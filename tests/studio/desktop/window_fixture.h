@@ -8,7 +8,9 @@
 #include <functional>
 #include <memory>
 
+#include "studio/desktop/application.h"
 #include "studio/desktop/main_window.h"
+#include "studio/desktop/problems_panel.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/study_tree.h"
 #include "tests/studio/desktop/few_gaps.h"
@@ -21,13 +23,17 @@ namespace fs = std::filesystem;
 inline std::function<void()> choose_platform = [] { ::setenv("QT_QPA_PLATFORM", "offscreen", 1); };
 
 /// One application for all tests: Qt allows no second one.
-inline QApplication& application() {
+inline Application& application() {
     static int count = 1;
     static char name[] = "test_desktop";
     static char* arguments[] = {name, nullptr};
     static const bool chosen = (choose_platform(), true);
     static_cast<void>(chosen);
-    static auto* instance = new QApplication(count, arguments);  // it must outlive whatever goes at the end
+    static auto* instance = [] {
+        auto* made = new Application(count, arguments);  // it must outlive whatever goes at the end
+        made->failed = [](const std::exception_ptr& error) { ADD_FAILURE() << tell(error).message.toStdString(); };
+        return made;
+    }();
     std::setlocale(LC_NUMERIC, "C");
     QLocale::setDefault(QLocale::c());
     return *instance;
