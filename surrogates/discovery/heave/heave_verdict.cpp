@@ -153,6 +153,13 @@ void HeaveLoop::keep_pairs(const std::vector<FittedHypothesis>& found, const std
     if (!whole_list_.empty() && smooth_score(best_smooth(whole_list_)) < found[best].cost + found[best].occam - 10) {
         return;
     }
+    // what a second effect adds on the runs that were fitted may be the first one's law in another form
+    const auto answer = [&](const FittedHypothesis& one, const HeaveNoise& noise) {
+        return answer_of(one.hypothesis.with(one.fit.parameters), noise);
+    };
+    if (!falls(answer(fitted_[best_single_], noises_[best_single_]), answer(found[best], noises[best]))) {
+        return;
+    }
     const Rest rest = rest_beside(found[best], noises[best]);
     if (rest.fit.p > calibration_.unknown_p || rest.share < 0.5 * calibration_.unknown_share) {
         fitted_.insert(fitted_.end(), found.begin(), found.end());

@@ -95,6 +95,17 @@ TEST(StandIns, ALiftThatLagsIsNoFilm) {
     EXPECT_LT(found.error.front().after.rmse, 1.3 * rig.noise) << found.sentence;
 }
 
+/// A drag with a power between one and two was both dampings at above 0.99: the second one adds nothing to runs that
+/// were not fitted.
+TEST(StandIns, ADragBetweenTwoLawsIsNotBoth) {
+    test::ReadingRig rig;
+    rig.extra = [](double, double, double w) { return -0.25 * w * std::pow(std::abs(w), 0.35); };
+    const Discovery found = found_in(rig, 1);
+    EXPECT_NE(found.verdict, "none") << found.sentence;
+    ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+    EXPECT_LT(found.effects.front().probability, 0.9) << found.sentence;
+}
+
 /// "Nothing is missing" is said of nothing but noise: where the fitted runs hold more, and no other run bears it out,
 /// that is what is said.
 TEST(StandIns, StructureThatNothingConfirmsIsToldAsSuch) {
