@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "core/units.h"
 #include "surrogates/discovery/consequence.h"
+#include "surrogates/discovery/correction_table.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/simulate/predict.h"
 
@@ -165,58 +165,21 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
     return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-namespace {
-
-/// Grid lines over what was seen, and one on either side at which the correction has faded to nothing.
-std::vector<double> fading_lines(double lower, double upper, std::size_t inside) {
-    constexpr double fade = 0.1;  ///< of the range
-    std::vector<double> lines{lower - fade * (upper - lower)};
-    for (std::size_t i = 0; i < inside; ++i) {
-        lines.push_back(lower + (upper - lower) * static_cast<double>(i) / static_cast<double>(inside - 1));
-    }
-    lines.push_back(upper + fade * (upper - lower));
-    return lines;
-}
-
-}  // namespace
-
 dynamics::EffectUse force_table(const FlexibleForce& force, double largest) {
-    const std::size_t variables = force.variables.size();
-    const std::size_t inside = variables == 1 ? 97 : 33;
-    const std::size_t each = inside + 2;
-    std::size_t count = 1;
-    std::vector<std::vector<double>> lines;
-    for (std::size_t v = 0; v < variables; ++v) {
-        count *= each;
-        lines.push_back(fading_lines(force.lower[v], force.upper[v], inside));
+    std::vector<std::string> names;
+    for (const FlexibleForce::Variable variable : force.variables) {
+        names.emplace_back(variable_name(variable));
     }
-    std::vector<std::vector<double>> grid(variables, std::vector<double>(count));
-    std::vector<double> values(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        std::size_t rest = i;
-        double point[4] = {0, 0, 0, 0};
-        bool faded = false;
-        for (std::size_t v = 0; v < variables; ++v) {
-            const std::size_t line = rest % each;
-            rest /= each;
-            grid[v][i] = lines[v][line];
-            faded = faded || line == 0 || line + 1 == each;
-            point[static_cast<std::size_t>(force.variables[v])] = grid[v][i];
-        }
-        values[i] = faded ? 0 : std::clamp(force(point[0], point[1], point[2], point[3]), -largest, largest);
-    }
-    core::Table table;
-    table.source = "correction-lift_force.csv";
-    for (std::size_t v = 0; v < variables; ++v) {
-        const char* name = variable_name(force.variables[v]);
-        table.add_numbers(name, core::find_quantity(name)->unit, grid[v]);
-    }
-    table.add_numbers("lift_force", "N", values);
-    dynamics::EffectUse use = dynamics::neutral_use("unknown");
-    use.quantity = "lift_force";
-    use.table = tables::ForceTable::fit(table, "lift_force");
-    use.table_file = table.source;
-    return use;
+    return correction_table(
+        names, force.lower, force.upper,
+        [&](const double* along) {
+            double point[4] = {0, 0, 0, 0};
+            for (std::size_t v = 0; v < force.variables.size(); ++v) {
+                point[static_cast<std::size_t>(force.variables[v])] = along[v];
+            }
+            return force(point[0], point[1], point[2], point[3]);
+        },
+        largest);
 }
 
 Consequence heave_consequence(const dynamics::Model& before, const dynamics::Model& after, const HeaveRecords& records,

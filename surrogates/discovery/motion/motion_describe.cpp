@@ -135,7 +135,7 @@ void MotionLoop::describe() {
             dynamics::motion_noise(shape(), data_, data_.runs[experiment_->records().front().run])[i]};
     }
     result_.stability = stability();
-    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth load", evidence_of_runs,
+    tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence_of_runs,
           [](const FittedHypothesis&, const FittedHypothesis& rival) {
               return "runs in which " + list_of(rival.hypothesis.depends_on) + " is excited apart from the rest";
           }},
@@ -150,11 +150,15 @@ void MotionLoop::describe() {
     for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_, data_)}) {
         result_.problems.insert(result_.problems.end(), more.begin(), more.end());
     }
-    result_.problems.push_back({core::Problem::Severity::note,
-                                shape().words +
-                                    ": waves, forces with memory and numbers that differ from run "
-                                    "to run are not looked for, and no smooth correction is put into the model",
-                                core::Place{data_.folder.string(), {}, {}, {}}});
+    const bool lifts = std::any_of(shape().loads.begin(), shape().loads.end(),
+                                   [](const auto& load) { return load.quantity == "lift_force"; });
+    result_.problems.push_back(
+        {core::Problem::Severity::note,
+         shape().words +
+             ": waves, forces with memory and numbers that differ from run to run are not looked for, and " +
+             (lifts ? "of laws without a name one of the lift alone is put into the model, as a smooth correction"
+                    : "no smooth correction is put into the model"),
+         core::Place{data_.folder.string(), {}, {}, {}}});
     if (options_.consequence) {
         result_.consequence = consequence();
     }

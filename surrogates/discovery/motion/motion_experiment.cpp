@@ -21,17 +21,6 @@ dynamics::Model with_all(const dynamics::Model& model, const std::vector<dynamic
     return changed;
 }
 
-/// The variable's value in the middle of a step.
-double value_of(const dynamics::MotionShape& shape, const std::string& variable, const MotionTrace& trace,
-                std::size_t k) {
-    for (const dynamics::MotionShape::Variable& one : shape.variables) {
-        if (one.quantity == variable) {
-            return trace.state[k][one.state];
-        }
-    }
-    return static_cast<double>(k);  // time
-}
-
 }  // namespace
 
 MotionExperiment::MotionExperiment(const dynamics::Motion& motion, const dynamics::Model& model,
@@ -327,47 +316,6 @@ DesignMatrix MotionExperiment::answers(const Hypothesis& hypothesis, const std::
         ++matrix.columns;
         for (std::size_t i = 0; i < there.size(); ++i) {
             matrix.values.push_back(there[i] - innovations[i]);
-        }
-    }
-    return matrix;
-}
-
-DesignMatrix MotionExperiment::answers(const MotionSmooth& smooth, const std::vector<MotionTrace>& traces) const {
-    std::vector<std::vector<double>> values(smooth.variables.size());
-    for (std::size_t v = 0; v < values.size(); ++v) {
-        for (const MotionTrace& trace : traces) {
-            for (std::size_t k = 0; k < trace.state.size(); ++k) {
-                values[v].push_back(value_of(shape(), smooth.variables[v], trace, k));
-            }
-        }
-    }
-    const FlexibleBasis basis(values, smooth.columns);
-    DesignMatrix matrix;
-    matrix.rows = begins().back();
-    matrix.columns = basis.columns();
-    std::size_t samples = 0;
-    for (const MotionTrace& trace : traces) {
-        samples += trace.state.size();
-    }
-    std::vector<std::vector<double>> loads(matrix.columns);
-    std::vector<double> point(values.size()), out(matrix.columns);
-    for (std::size_t k = 0; k < samples; ++k) {
-        for (std::size_t v = 0; v < values.size(); ++v) {
-            point[v] = values[v][k];
-        }
-        basis.evaluate(point.data(), out.data());
-        for (std::size_t c = 0; c < matrix.columns; ++c) {
-            loads[c].push_back(out[c]);
-        }
-    }
-    for (std::size_t c = 0; c < matrix.columns; ++c) {
-        std::size_t from = 0;
-        for (std::size_t r = 0; r < traces.size(); ++r) {
-            const std::vector<double> own(
-                loads[c].begin() + static_cast<std::ptrdiff_t>(from),
-                loads[c].begin() + static_cast<std::ptrdiff_t>(from + traces[r].state.size()));
-            from += traces[r].state.size();
-            linear_answer(shape(), traces[r], records_[r], smooth.axis, own, matrix.values);
         }
     }
     return matrix;

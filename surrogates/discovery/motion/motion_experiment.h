@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,10 +66,22 @@ public:
     [[nodiscard]] DesignMatrix answers(const Hypothesis& hypothesis, const std::vector<std::vector<double>>& steps,
                                        const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,
                                        const std::vector<double>& innovations) const;
-    /// What each column of a smooth load does, to first order about the motion of `traces`.
+    /// What each column of a smooth load does, to first order about the motion of `traces` (motion_smooth.cpp).
     [[nodiscard]] DesignMatrix answers(const MotionSmooth& smooth, const std::vector<MotionTrace>& traces) const;
 
+    struct SmoothForce {
+        std::optional<dynamics::EffectUse> use;  ///< nothing where no table raises the likelihood
+        MotionNoise noise;
+        double cost = 0;
+    };
+    /// The likeliest force up over the variables of `smooth` (none of them time) beside the declared model, as a table
+    /// that is nowhere larger than the `reach` quantile of the force over the states seen.
+    [[nodiscard]] SmoothForce fit_smooth(const MotionSmooth& smooth, const MotionNoise& begin, double reach) const;
+
 private:
+    /// loads[column][sample of all traces]
+    [[nodiscard]] DesignMatrix answers(std::size_t axis, const std::vector<std::vector<double>>& loads,
+                                       const std::vector<MotionTrace>& traces) const;
     double cost_of(const std::vector<std::size_t>& chosen, const std::vector<dynamics::EffectUse>& uses,
                    const MotionNoise& noise) const;
     [[nodiscard]] std::vector<LinearMotionRun> linear_runs(const std::vector<dynamics::EffectUse>& uses,

@@ -213,6 +213,30 @@ double MotionLoop::share_left(const Answer& declared, const Answer& answer) cons
     return missed > 0 ? std::max(left, 0.0) / missed : 0;
 }
 
+/// A table over time says nothing of another run, and of the loads only the lift has a place for one in a model.
+std::optional<dynamics::EffectUse> MotionLoop::smooth_force() const {
+    if (!likeliest_smooth_ || likeliest_smooth_->variables.empty() ||
+        shape().loads[likeliest_smooth_->axis].quantity != "lift_force") {
+        return {};
+    }
+    for (const std::string& variable : likeliest_smooth_->variables) {
+        dynamics::Channel channel{};
+        if (!dynamics::find_channel(variable, channel) || channel == dynamics::Channel::time) {
+            return {};
+        }
+    }
+    return experiment_->fit_smooth(*likeliest_smooth_, null_noise_, calibration_.correction_reach).use;
+}
+
+bool MotionLoop::correct(const Answer& before) {
+    const std::optional<dynamics::EffectUse> force = smooth_force();
+    if (!force || !falls(before, answer_of({*force}, options_.horizon))) {
+        return false;
+    }
+    uses_ = {*force};
+    return true;
+}
+
 void MotionLoop::decide() {
     attribution_ = attribute(fitted_, gate_, rest_.fit, calibration_);
     result_.verdict = attribution_.verdict;
@@ -242,7 +266,7 @@ void MotionLoop::guard() {
             result_.verdict = "none";
         } else {
             quiet = rest_is_noise(named);
-            if (!quiet && share_left(declared, named) > calibration_.most_left) {
+            if (!quiet && (correct(named) || share_left(declared, named) > calibration_.most_left)) {
                 result_.verdict = "unknown";
                 give_to_unknown(attribution_, 0.8);
             } else {
@@ -250,15 +274,18 @@ void MotionLoop::guard() {
             }
         }
     }
-    if (uses_.empty()) {
-        quiet = rest_is_noise(declared);
-        if (result_.verdict == "unknown") {
-            cap_probabilities(attribution_, 0.5);  // no correction is drawn: the held-out error does not fall
-        }
+    if (result_.verdict == "unknown" && uses_.empty() && !correct(declared)) {
+        cap_probabilities(attribution_, 0.5);
+    }
+    if (result_.verdict != "effect") {
+        quiet = uses_.empty() ? rest_is_noise(declared) : rest_is_noise(answer_of(uses_, options_.horizon));
     }
     if (result_.verdict == "none" && !quiet) {
         result_.verdict = "unknown";
-        if (whole_.variables.empty() || gate_ >= calibration_.gate) {
+        if (correct(declared)) {
+            quiet = rest_is_noise(answer_of(uses_, options_.horizon));
+        }
+        if (uses_.empty() && (whole_.variables.empty() || gate_ >= calibration_.gate)) {
             whole_.variables = {"time"};  // as a random force would: no variable explains it
         }
         rule_out_none(attribution_, 0.5);

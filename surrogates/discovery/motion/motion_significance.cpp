@@ -134,6 +134,7 @@ void MotionLoop::open_gate() {
     if (most == nullptr) {
         return;
     }
+    likeliest_smooth_ = most->smooth;
     whole_.variables = most->smooth->variables;
     whole_.gain = most->gain;
     whole_.degrees = static_cast<double>(most->columns.columns);

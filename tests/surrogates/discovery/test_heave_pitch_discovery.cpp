@@ -193,6 +193,41 @@ TEST_F(HeavePitchDiscovery, NamesAnEffectInTheForce) {
     EXPECT_LT(found.axes[0].rms_after, 0.5 * found.axes[0].rms_before);
 }
 
+/// A ring of lift in the gap, and a wave of it over the pitch: laws that no effect of the catalogue resembles.
+TEST_F(HeavePitchDiscovery, PutsALawWithoutANameIntoTheModel) {
+    const std::vector<std::pair<std::string, std::function<double(const PitchMoment&)>>> laws = {
+        {"gap", [](const PitchMoment& now) { return 0.02 * std::sin(now.gap / 0.02); }},
+        {"pitch", [](const PitchMoment& now) { return 0.02 * std::cos(now.pitch / 0.025); }}};
+    for (const auto& [over, law] : laws) {
+        PitchRig rig = short_rig();
+        rig.force = law;
+        const Discovery found = discover(model_, test::pitch_rig_runs(rig, 6, 61), quick());
+        ASSERT_EQ(found.verdict, "unknown") << found.sentence;
+        EXPECT_EQ(found.depends_on, std::vector<std::string>{over}) << found.sentence;
+        ASSERT_EQ(found.effects.size(), 1U);
+        ASSERT_EQ(found.effects[0].uses.size(), 1U) << found.sentence;
+        EXPECT_NE(found.sentence.find("A smooth correction was put into the model"), std::string::npos)
+            << found.sentence;
+        const ErrorChange& gap = error_of(found, "gap");
+        EXPECT_LT(gap.after.rmse, 0.5 * gap.before.rmse) << found.sentence;
+        // as large as the law and no larger
+        const tables::ForceTable& table = *found.effects[0].uses[0].table;
+        EXPECT_LT(
+            *std::max_element(table.points().numbers("lift_force").begin(), table.points().numbers("lift_force").end()),
+            1.5 * 0.02);
+        // the model as written predicts runs of another controller that nothing saw
+        dynamics::write_model(found.model, folder_.path() / over / "model.toml");
+        const dynamics::Model written = dynamics::read_model(folder_.path() / over / "model.toml");
+        dynamics::PredictOptions options;
+        options.horizon = 1;
+        rig.gain = 1.3;
+        const dynamics::Measurements fresh = test::pitch_rig_runs(rig, 4, 1061);
+        const double before = dynamics::predict(model_, fresh, options).channels[0].rmse;
+        const double after = dynamics::predict(written, fresh, options).channels[0].rmse;
+        EXPECT_LT(after, 0.6 * before) << over;
+    }
+}
+
 TEST_F(HeavePitchDiscovery, IsSilentOnACleanRigWithWhiteOrColouredNoiseFedBack) {
     for (const double colour : {0.0, 0.9}) {
         PitchRig rig = short_rig();
