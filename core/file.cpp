@@ -5,9 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "core/error.h"
@@ -57,11 +60,47 @@ std::string hint_for_missing(const fs::path& path) {
 
 namespace {
 
+/// A device, a pipe, or a link such as /dev/stdout to what a descriptor has open: never renamed over, which would put
+/// a plain file in its place.
+bool takes_a_stream(const fs::path& target) {
+    std::error_code none;
+    if (fs::is_symlink(fs::symlink_status(target, none))) {
+        const std::string link = fs::read_symlink(target, none).string();
+        if (link.starts_with("/proc/self/fd/") || target.parent_path() == "/proc/self/fd" ||
+            target.parent_path() == "/dev/fd") {
+            return true;
+        }
+    }
+    const fs::file_type kind = fs::status(target, none).type();
+    return kind == fs::file_type::character || kind == fs::file_type::block || kind == fs::file_type::fifo ||
+           kind == fs::file_type::socket;
+}
+
 fs::path temporary_name(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
     const std::string stem = "." + target.filename().string() + ".underbody-" + std::to_string(::getpid()) + "-" +
                              std::to_string(counter.fetch_add(1)) + target.extension().string();
-    return target.parent_path() / stem;
+    return (takes_a_stream(target) ? fs::temp_directory_path() : target.parent_path()) / stem;
+}
+
+void write_all(int descriptor, std::string_view bytes, const fs::path& path) {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t step = ::write(descriptor, bytes.data() + done, bytes.size() - done);
+        if (step < 0 && errno != EINTR) {
+            throw SystemError("write", "cannot be written: " + reason(errno), {path.string(), {}, {}, {}});
+        }
+        done += static_cast<std::size_t>(std::max<ssize_t>(step, 0));
+    }
+}
+
+void refuse_disk(const fs::path& path) {
+    std::error_code none;
+    const fs::file_type kind = fs::status(path, none).type();
+    if (kind == fs::file_type::block || kind == fs::file_type::socket) {
+        throw SystemError("write", kind == fs::file_type::block ? "is a disk, not a file" : "is a socket, not a file",
+                          {path.string(), {}, {}, {}});
+    }
 }
 
 void make_parent(const fs::path& path) {
@@ -131,17 +170,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
         if (file.get() < 0) {
             throw SystemError("write", "cannot be written: " + reason(errno), {path.string(), {}, {}, {}});
         }
-        std::size_t done = 0;
-        while (done < bytes.size()) {
-            const ssize_t step = ::write(file.get(), bytes.data() + done, bytes.size() - done);
-            if (step < 0) {
-                if (errno == EINTR) {
-                    continue;
-                }
-                throw SystemError("write", "cannot be written: " + reason(errno), {path.string(), {}, {}, {}});
-            }
-            done += static_cast<std::size_t>(step);
-        }
+        write_all(file.get(), bytes, path);
     }
     pending.commit();
 }
@@ -149,6 +178,10 @@ void write_file(const fs::path& path, std::string_view bytes) {
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)), temporary_(temporary_name(target_)) {
     if (target_.filename().empty()) {
         throw SystemError("write", "is not a file name", {target_.string(), {}, {}, {}});
+    }
+    if (takes_a_stream(target_)) {
+        refuse_disk(target_);
+        return;
     }
     refuse_other_file(target_);
     make_parent(target_);
@@ -162,6 +195,16 @@ PendingFile::~PendingFile() {
 }
 
 void PendingFile::commit() {
+    if (takes_a_stream(target_)) {
+        const Descriptor out(::open(target_.c_str(), O_WRONLY | O_CLOEXEC));
+        if (out.get() < 0) {
+            throw SystemError("write", "cannot be written: " + reason(errno), {target_.string(), {}, {}, {}});
+        }
+        std::ostringstream bytes;
+        bytes << std::ifstream(temporary_, std::ios::binary).rdbuf();
+        write_all(out.get(), bytes.view(), target_);
+        return;  // not marked as committed: the temporary file goes
+    }
     const Descriptor file(::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.get() < 0 || ::fsync(file.get()) != 0) {
         throw SystemError("write", "cannot be written: " + reason(errno), {target_.string(), {}, {}, {}});

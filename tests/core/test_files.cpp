@@ -1,8 +1,12 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <fstream>
@@ -48,6 +52,26 @@ TEST(Files, AFailedWriteLeavesTheOldFileAndNothingElse) {
     ::setrlimit(RLIMIT_FSIZE, &old_limit);
     EXPECT_EQ(read_file(path), "old");
     EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(Files, APipeOrADeviceIsWrittenToAndStaysWhatItIs) {
+    const TemporaryFolder folder;
+    const fs::path pipe = folder.path() / "pipe.csv";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    write_file(pipe, "table");
+    std::string heard(20, '\0');
+    heard.resize(static_cast<std::size_t>(std::max<ssize_t>(::read(reader, heard.data(), heard.size()), 0)));
+    ::close(reader);
+    EXPECT_EQ(heard, "table");
+    EXPECT_TRUE(fs::is_fifo(pipe));
+
+    const fs::path null = folder.path() / "null.csv";  // its own, so that a failure does not take the machine's
+    if (::mknod(null.c_str(), S_IFCHR | 0600, makedev(1, 3)) == 0) {
+        write_file(null, "table");
+        EXPECT_TRUE(fs::is_character_file(null));
+    }
+    EXPECT_LE(entries(folder.path()), 2U);
 }
 
 TEST(Files, APendingFileThatIsNotCommittedDisappears) {
