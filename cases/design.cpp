@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "geometry/body/variants.h"
 #include "surrogates/tables/search/sampling.h"
 
 namespace underbody::cases {
@@ -116,6 +117,52 @@ void find_repeated(const DesignSpec& spec, const core::Table& table, std::vector
     }
 }
 
+/// What [design] computes of a condition, in SI, ascending.
+struct ComputedCondition {
+    const char* name;
+    std::string unit;
+    const std::vector<double>& values;
+};
+
+/// Rows at conditions that [design] does not compute (gaps in metres for millimetres, another speed) are learned all
+/// the same, and said.
+void note_other_conditions(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
+    const std::string jet_unit = spec.jet.any() ? spec.jet.unit() : std::string();
+    for (const ComputedCondition& c :
+         {ComputedCondition{"gap", "m", spec.gaps}, ComputedCondition{"pitch", "rad", spec.pitches},
+          ComputedCondition{"speed", "m/s", spec.speeds},
+          ComputedCondition{spec.jet.quantity.c_str(), jet_unit, spec.jet.values}}) {
+        if (c.values.empty() || table.find(c.name) == nullptr) {
+            continue;
+        }
+        const double low = c.values.front(), high = c.values.back();
+        const double rounding = 1e-6 * std::max(high - low, std::max(std::abs(low), std::abs(high)));
+        std::vector<double> other;
+        std::size_t first = 0;
+        const auto& at = table.numbers(c.name);
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            if (at[i] < low - rounding || at[i] > high + rounding) {
+                first = other.empty() ? i : first;
+                other.push_back(at[i]);
+            }
+        }
+        if (other.empty()) {
+            continue;
+        }
+        const auto shown = [&](double from, double to) {
+            return geometry::shown_value(from, c.unit, 6) +
+                   (from < to ? " to " + geometry::shown_value(to, c.unit, 6) : "");
+        };
+        const auto [least, most] = std::minmax_element(other.begin(), other.end());
+        notes.push_back({core::Problem::Severity::warning,
+                         std::string(c.name) + " is " + shown(*least, *most) + " in " +
+                             core::counted(other.size(), "row") + ", and [design] computes " + shown(low, high) +
+                             (low < high ? ": what is said there rests on rows that lie elsewhere"
+                                         : ": these rows are taken as if they were of it"),
+                         table.place(first, c.name)});
+    }
+}
+
 std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
     const std::string& file = table.source;
     std::vector<DesignRun> runs(table.rows());
@@ -160,8 +207,29 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
             }
         }
     }
+    note_other_conditions(spec, table, notes);
     find_repeated(spec, table, runs, notes);
     return runs;
+}
+
+constexpr std::size_t most_variables = 10;  ///< of a tables::Surrogate
+
+/// Before anything is computed: what no surrogate can learn is not worth a run.
+void check_count(const DesignSpec& spec, const Study& study) {
+    const auto all = spec.all_variables();
+    if (all.size() <= most_variables) {
+        return;
+    }
+    std::string conditions;
+    for (std::size_t v = spec.variables.size(); v < all.size(); ++v) {
+        conditions += (v + 1 == all.size() ? " and " : ", ") + all[v].name;
+    }
+    throw core::InputError("range",
+                           "[design] has " + std::to_string(all.size()) + " variables: " +
+                               core::counted(spec.variables.size(), "number") + " of the shape" + conditions,
+                           {(study.folder() / "study.toml").string(), {}, {}, {}},
+                           "surrogates learn " + std::to_string(most_variables) +
+                               " at most: vary fewer numbers, or give a condition one value");
 }
 
 }  // namespace
@@ -174,6 +242,7 @@ Design Design::open(const Study& study) {
     Design design;
     design.spec_ = *study.design;
     check_responses(design.spec_);
+    check_count(design.spec_, study);
     design.base_ = geometry::read_shape(design.spec_.shape);
     const auto& varied = design.spec_.variables;
     if (design.spec_.jet.any() && !design.base_.nozzle &&

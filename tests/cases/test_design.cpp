@@ -523,6 +523,61 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
     EXPECT_THAT(refused("cell = 0.25", "iterations = -1"), testing::HasSubstr("iterations is -1"));
 }
 
+/// More variables than a surrogate learns: said before the first run, not after the last.
+TEST_F(DesignFiles, MoreThanTenVariablesAreRefusedBeforeTheyCostRuns) {
+    std::string text = design_toml;
+    std::string more;
+    for (const char* key :
+         {"body.length\"\nfrom = \"190 mm\"\nto = \"220 mm\"", "body.width\"\nfrom = \"140 mm\"\nto = \"160 mm\"",
+          "body.height\"\nfrom = \"140 mm\"\nto = \"150 mm\"", "body.taper\"\nfrom = -0.1\nto = 0.1",
+          "body.base_pitch\"\nfrom = \"-1 deg\"\nto = \"1 deg\"",
+          "body.base_offset\"\nfrom = \"-10 mm\"\nto = \"10 mm\""}) {
+        more += std::string("[[design.vary]]\nkey = \"") + key + "\n";
+    }
+    const std::size_t tie = text.find("[[design.tie]]");
+    core::write_file(folder_.path() / "study.toml", std::string(text).insert(tie, more));
+    EXPECT_EQ(open().spec().all_variables().size(), 10u) << "eight numbers, gap and pitch";
+    more += "[[design.vary]]\nkey = \"protrusion.position\"\nfrom = 0.7\nto = 0.8\n";
+    core::write_file(folder_.path() / "study.toml", text.insert(tie, more));
+    try {
+        (void)open();
+        FAIL() << "eleven variables";
+    } catch (const core::InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("study.toml"));
+        EXPECT_THAT(error.what(),
+                    testing::HasSubstr("[design] has 11 variables: 9 numbers of the shape, gap and pitch"));
+    }
+}
+
+/// Gaps in metres for millimetres, or another speed than [design] computes: learned, and said.
+TEST_F(DesignFiles, RowsAtOtherConditionsAreSaid) {
+    Design design = open();
+    design.make_plan();
+    compute(design);
+    EXPECT_TRUE(open().notes.empty());
+    const fs::path file = folder_.path() / "design" / "results.csv";
+    const std::string text = core::read_file(file);
+    std::string in_metres = text;
+    in_metres.replace(in_metres.find("gap [mm]"), 8, "gap [m]");
+    core::write_file(file, in_metres);
+    const Design wrong = open();
+    ASSERT_EQ(wrong.notes.size(), 1u);
+    EXPECT_THAT(wrong.notes.front().message,
+                testing::HasSubstr("gap is 3000 mm to 10000 mm in 96 rows, and [design] computes 3 mm to 10 mm"));
+    EXPECT_THAT(wrong.notes.front().place.text(), testing::HasSubstr("results.csv:2"));
+    std::string faster = text;
+    for (std::size_t at = 0; (at = faster.find('\n', at)) != std::string::npos && at + 1 < faster.size(); ++at) {
+        faster.insert(at, at == faster.find('\n') ? ",speed [m/s]" : ",0.8");
+        at = faster.find('\n', at);
+    }
+    faster.insert(faster.size() - 1, ",0.5");
+    core::write_file(file, faster);
+    const Design other = open();
+    ASSERT_EQ(other.notes.size(), 1u);
+    EXPECT_THAT(other.notes.front().message,
+                testing::HasSubstr("speed is 0.8 m/s in 95 rows, and [design] computes 0.5 m/s"));
+}
+
 TEST_F(DesignFiles, TheOnlyValueOfAConditionMayBeSaid) {
     std::string text = design_toml;
     text.replace(text.find("[\"3 mm\", \"5 mm\", \"10 mm\"]"), 25, "\"5 mm\"");

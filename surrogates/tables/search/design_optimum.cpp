@@ -264,7 +264,8 @@ std::vector<Function> limits_from(const std::vector<Function>& objectives, std::
 std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64_t seed,
                                                   core::Progress& progress) const {
     const std::size_t axes = problem_.variables.size(), objectives = problem_.objectives.size();
-    const OnTheCube cube(*this, 0);
+    // By a margin as the optimum has it: designs on a limit hold it with a chance of one half.
+    const OnTheCube cube(*this, 1);
     std::vector<FrontPoint> points;
     const auto take = [&](std::vector<double> u) {
         if (cube.violation(u) > 1e-6) {

@@ -503,6 +503,32 @@ TEST(Search, AFrontHoldsDesignsThatNoneBeats) {
     EXPECT_NE(t.find("f_sigma"), nullptr);
 }
 
+/// Not on a limit, where a design holds it with a chance of one half: within it by one standard deviation.
+TEST(Search, AFrontMeetsItsLimitsByAMargin) {
+    const std::vector<SearchVariable> variables = {{"x", "1", -1, 3}, {"y", "1", -1, 1}};
+    std::vector<SearchRun> first, second, third;
+    for (const auto& u : sobol_plan(60, 2, 1)) {
+        const double x = -1 + 4 * u[0], y = -1 + 2 * u[1];
+        first.push_back({{x, y}, 0, x * x + y * y, 0.02});
+        second.push_back({{x, y}, 0, (x - 2) * (x - 2) + y * y, 0.02});
+        third.push_back({{x, y}, 0, y, 0.02});
+    }
+    SearchProblem problem;
+    problem.variables = variables;
+    problem.objectives = {{{"f", "f", {}, "", 0}, Objective::Sense::minimise, 0},
+                          {{"g", "g", {}, "", 0}, Objective::Sense::minimise, 0}};
+    problem.limits = {{{"h", "h", {}, "", 0}, 0.5, 1e300}};  // both would have y = 0
+    const DesignSearch search(problem, {{"f", Surrogate::fit("f", "1", variables, first)},
+                                        {"g", Surrogate::fit("g", "1", variables, second)},
+                                        {"h", Surrogate::fit("h", "1", variables, third)}});
+    const auto front = search.pareto_front(12, 1);
+    ASSERT_FALSE(front.empty());
+    for (const Candidate& c : front) {
+        EXPECT_GE(c.limits[0].value - 0.999 * c.limits[0].sigma, 0.5);
+        EXPECT_GT(c.chance_valid, 0.84);
+    }
+}
+
 TEST(Search, ASlopeIsAResponse) {
     std::vector<SearchVariable> variables = {{"x", "1", 0, 1}, {"pitch", "rad", -0.1, 0.1, false, false}};
     std::vector<SearchRun> runs;
