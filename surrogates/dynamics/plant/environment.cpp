@@ -13,8 +13,7 @@ HeavePlant vertical_channel(const Model& resolved, const Conditions& held, const
     HeavePlant plant(alone, held, varying);
     plant.keep_channels();
     plant.terms.contact_gap = contact_gap(resolved);
-    const auto lags = [](const EffectUse& use) { return use.name == "lift_lag"; };
-    if (std::any_of(resolved.effects.begin(), resolved.effects.end(), lags)) {  // a law of the lift that is not here
+    if (!resolved.effects.empty()) {  // an effect may draw its correction from the lift, which is not here
         plant.terms.corrections = HeavePlant(resolved, held, varying).terms.corrections;
     }
     return plant;
