@@ -15,7 +15,10 @@ namespace fs = std::filesystem;
 
 fs::path source_folder() { return UNDERBODY_SOURCE_FOLDER; }
 fs::path data_folder() { return source_folder() / "tests" / "data"; }
-fs::path program_folder() { return UNDERBODY_PROGRAM_FOLDER; }
+fs::path program_folder() {
+    const char* set = std::getenv("UNDERBODY_TESTED_PROGRAMS");
+    return set != nullptr ? set : UNDERBODY_PROGRAM_FOLDER;
+}
 
 fs::path shared_folder() {
     if (const char* set = std::getenv("UNDERBODY_SHARED")) {

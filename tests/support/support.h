@@ -16,7 +16,7 @@ std::filesystem::path source_folder();
 std::filesystem::path data_folder();
 /// Third-party files that are read in place: $UNDERBODY_SHARED, or `shared` beside the source tree; empty when missing.
 std::filesystem::path shared_folder();
-/// build/.../bin
+/// Where the tested programs are: $UNDERBODY_TESTED_PROGRAMS, or build/.../bin.
 std::filesystem::path program_folder();
 
 /// Skips the test, saying so, when a file below the shared folder is missing.
