@@ -74,7 +74,7 @@ void DesignPanel::build() {
     lift_plot_ = new PlotView(this);
     map_plot_ = new PlotView(this);
     for (auto* plot : {lift_plot_, map_plot_}) {
-        plot->set_least({260, 250});  // title, legend and axis take 130 of it
+        plot->set_least({260, 270});  // title, a legend of three lines and the axis take 150 of it
     }
     constexpr int room = 800;  // px: narrower ones are all legend
     views->addWidget(upper_);

@@ -111,6 +111,7 @@ void DesignPanel::show_card() {
                 card_->setItem(row, column, item);
             }
             item->setText(cells[column]);
+            item->setToolTip(cells[column]);
             QFont font = card_->font();
             font.setBold(column == 1 && !was.isEmpty() && now != was);
             item->setFont(font);

@@ -178,7 +178,9 @@ TEST(Desktop, ComparesByDifferences) {
 TEST(Report, HasWhatAReaderMissed) {
     const core::TemporaryFolder folder;
     test::make_few_gaps(folder.path());
-    core::write_file(folder.path() / "study.toml", core::read_file(folder.path() / "study.toml") +
+    std::string text = core::read_file(folder.path() / "study.toml");
+    text.insert(text.find("net_weight"), "relative_sigma = 0.05\n");
+    core::write_file(folder.path() / "study.toml", text +
                                                        "\n[[picture]]\nname = \"level\"\nwhere = { gap = \"5mm\" }\n"
                                                        "views = [\"pressure-underbody\"]\n");
     const auto run = test::run_underbody(

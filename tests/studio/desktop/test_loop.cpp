@@ -305,6 +305,8 @@ TEST_F(Dropped, FilesAreTakenWhereverTheyFall) {
         QApplication::sendEvent(window_->windowHandle(), &enter);
         EXPECT_TRUE(enter.isAccepted());
         QDragMoveEvent move(at, Qt::CopyAction | Qt::MoveAction, &data, Qt::LeftButton, Qt::ShiftModifier);
+        move.setDropAction(enter.dropAction());  // as Qt hands them on
+        move.accept();
         QApplication::sendEvent(window_->windowHandle(), &move);
         EXPECT_TRUE(move.isAccepted());
         QDropEvent drop(at, Qt::CopyAction | Qt::MoveAction, &data, Qt::LeftButton, Qt::ShiftModifier);
