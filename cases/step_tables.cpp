@@ -52,12 +52,26 @@ tables::EquilibriumOptions equilibrium_options(const TableSpec& spec) {
     return options;
 }
 
+/// A study has no place for the value of another axis: `where` of a table over the gap alone says it.
+tables::Equilibria balance(const TableSpec& spec, const tables::ForceTable& table) {
+    try {
+        return tables::equilibria(table, equilibrium_options(spec));
+    } catch (const core::UsageError& error) {
+        if (table.axes().size() < 2) {
+            throw;
+        }
+        throw core::UsageError(error.kind(), error.message(), error.place(),
+                               "this table without net_weight, and one over " + table.axes().front().name +
+                                   " alone with it, whose where says the rest");
+    }
+}
+
 std::string compute_table(const TableSpec& spec, const core::Table& points, const tables::ForceTable& table,
                           const std::vector<std::string>& mixed) {
     nlohmann::json document;
     core::Problems of_equilibria;
     if (spec.net_weight) {
-        const tables::Equilibria found = tables::equilibria(table, equilibrium_options(spec));
+        const tables::Equilibria found = balance(spec, table);
         tables::to_json(document, found);
         of_equilibria = found.remarks;
     }

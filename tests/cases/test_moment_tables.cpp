@@ -61,5 +61,29 @@ TEST(MomentTables, YawIsPositiveBowToStarboardFromStudyToExport) {
     expect_moment(folder.path(), results, "yaw_moment", -0.020);
 }
 
+/// Where another axis has no value the balance fails, and the hint is one that a study can follow.
+TEST(MomentTables, AWeightOverTwoAxesSaysWhatAStudyCanDo) {
+    const core::TemporaryFolder folder;
+    for (int gap = 1; gap <= 4; ++gap) {
+        for (const int speed : {400, 800}) {
+            core::write_file(
+                folder.path() / "fields" / ("cube-h" + std::to_string(gap) + "-s" + std::to_string(speed) + ".csv"),
+                test::cube_field(1e-3 * gap, (7 - gap) * speed / 8.0));
+        }
+    }
+    core::write_file(folder.path() / "study.toml",
+                     "title = \"weight\"\n[[case]]\nfiles = \"fields/{variant}-h{gap:mm}-s{speed:mm/s}.csv\"\n"
+                     "[[table]]\nname = \"lift\"\nquantity = \"lift_force\"\naxes = [\"gap\", \"speed\"]\n"
+                     "net_weight = \"0.3 N\"\n");
+    RunOptions options;
+    options.pictures = false;
+    std::string error;
+    for (const auto& step : run_study(Study::open(folder.path()), options).steps) {
+        error += step.kind == "table" ? step.error : "";
+    }
+    EXPECT_THAT(error, testing::HasSubstr("axis 'speed' whose value is not given"));
+    EXPECT_THAT(error, testing::HasSubstr("this table without net_weight, and one over gap alone with it"));
+}
+
 }  // namespace
 }  // namespace underbody::cases

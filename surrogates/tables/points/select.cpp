@@ -125,8 +125,10 @@ core::Table selected_rows(const core::Table& table, const std::string& given) {
 }
 
 std::vector<std::string> force_columns(const core::Table& table) {
+    // x_force to z_force: as an export in body axes (z down) names them.
     static const std::vector<std::string> forces = {"lift_force",   "drag_force",  "side_force",
-                                                    "pitch_moment", "roll_moment", "yaw_moment"};
+                                                    "pitch_moment", "roll_moment", "yaw_moment",
+                                                    "x_force",      "y_force",     "z_force"};
     std::vector<std::string> found;
     std::vector<std::string> others;
     for (const auto& column : table.columns()) {

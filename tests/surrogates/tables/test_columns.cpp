@@ -27,6 +27,18 @@ std::string refusal(const std::string& text, const std::vector<std::string>& axe
     return "no error";
 }
 
+/// An export in body axes (z down) has its forces under other names: all of them are forces when it is read back.
+TEST(Columns, ForcesInBodyAxesAreForcesBesideAMoment) {
+    core::Table table;
+    table.add_numbers("gap", "m", {0.002, 0.004});
+    table.add_numbers("z_force", "N", {-1, -2});
+    table.add_numbers("z_force_sigma", "N", {0.1, 0.1});
+    table.add_numbers("z_force_per_gap", "N/m", {0, 0});
+    table.add_numbers("pitch_moment", "N m", {1, 2});
+    table.add_numbers("x_force", "N", {-3, -4});
+    EXPECT_EQ(tables::force_columns(table), (std::vector<std::string>{"z_force", "pitch_moment", "x_force"}));
+}
+
 TEST(Columns, AMisnamedAxisIsNamedWhereThePointsThenRepeat) {
     const std::string text = refusal(
         "Gap (mm), trim angle [deg], speed [m/s], lift_force [N]\n1,0,0.4,1\n2,0,0.4,2\n1,1,0.6,1.5\n2,1,0.6,2.5\n",
