@@ -178,7 +178,7 @@ void MotionLoop::list_candidates() {
     keep_only(candidates_, options_.candidates);
 }
 
-/// A law over a place that no run has readings of.
+/// A law over a place that no run has readings of, or over a recorded moment that none has.
 bool MotionLoop::needs_unread(const Hypothesis& hypothesis) const {
     return std::any_of(hypothesis.depends_on.begin(), hypothesis.depends_on.end(), [&](const std::string& quantity) {
         for (std::size_t i = 0; i < shape().states.size(); ++i) {
@@ -186,7 +186,10 @@ bool MotionLoop::needs_unread(const Hypothesis& hypothesis) const {
                 return std::find(channels_.begin(), channels_.end(), i) == channels_.end();
             }
         }
-        return false;
+        return quantity == "input_moment" &&
+               std::none_of(data_.runs.begin(), data_.runs.end(), [](const dynamics::MeasuredRun& run) {
+                   return dynamics::column_moves(run, "input_moment");
+               });
     });
 }
 

@@ -30,6 +30,7 @@
     X(pitch_stiffness)          \
     X(moment_offset)            \
     X(input_arm)                \
+    X(moment_gain)              \
     X(mass_centre_offset)       \
     X(tether_with_arm)          \
     X(added_pitch_inertia)      \

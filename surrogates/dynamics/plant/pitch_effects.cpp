@@ -7,7 +7,8 @@ namespace {
 bool acts(const HeaveTerms& terms, bool whole_body) {
     const PitchTerms& t = terms.pitch;
     return (whole_body && !(terms.surface == SurfaceTerms{})) || t.moment != 0 || t.linear != 0 || t.quadratic != 0 ||
-           t.stiffness != 0 || t.inertia != 0 || t.input_arm != 0 || t.mass_forward != 0 || t.spring != 0;
+           t.stiffness != 0 || t.inertia != 0 || t.input_arm != 0 || t.moment_gain != 1 || t.mass_forward != 0 ||
+           t.spring != 0;
 }
 
 }  // namespace

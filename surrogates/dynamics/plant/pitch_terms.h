@@ -15,6 +15,7 @@ struct PitchTerms {
     double stiffness = 0;     ///< N m
     double inertia = 0;       ///< kg m^2, beside the declared
     double input_arm = 0;     ///< m, ahead of the centre of gravity, at which the input acts
+    double moment_gain = 1;   ///< of the recorded input_moment
     double mass_forward = 0;  ///< m, centre of gravity ahead of the declared one
     double spring = 0, spring_arm = 0, spring_arm_square = 0;  ///< sums of k, k a, k a^2
     double spring_rest = 0, spring_rest_arm = 0;               ///< sums of k g, k a g

@@ -285,8 +285,9 @@ LinearSystem HeavePitch::linearised(double gap, double pitch) const {
         PitchState d{};
         rate(y, ContactState::free, d);
         std::copy(d.begin(), d.end(), out);
-        out[1] += u[0] / virtual_mass(x[0]) + arm(x[2]) * u[1] / inertia_;
-        out[3] += u[1] / inertia_;
+        const double turn = vertical_.terms.pitch.moment_gain * u[1] / inertia_;
+        out[1] += u[0] / virtual_mass(x[0]) + arm(x[2]) * turn;
+        out[3] += turn;
     };
     return linearise(rate_of, {gap, 0, pitch, 0}, {0, 0}, {"gap", "heave_velocity", "pitch", "pitch_rate"},
                      {"input_force", "input_moment"}, {1e-2, 1e-3, 1e-2, 1e-3}, {1e-2, 1e-3}, 1e-3);

@@ -104,7 +104,8 @@ void PitchRun::plant_rate(std::size_t k, double t, const MotionState& y, Contact
     around.moment = loads[1];
     if (!input_moment_.empty()) {
         const double part = linear_ ? (t - time()[k]) / (time()[k + 1] - time()[k]) : 0;
-        around.moment += input_moment_[k] + (part > 0 ? part * (input_moment_[k + 1] - input_moment_[k]) : 0);
+        around.moment += plant_.vertical().terms.pitch.moment_gain *
+                         (input_moment_[k] + (part > 0 ? part * (input_moment_[k + 1] - input_moment_[k]) : 0));
     }
     PitchState rate{};
     plant_.rate(plant_state(y), bearing, rate, around);

@@ -181,6 +181,43 @@ TEST_F(HeavePitchDiscovery, WildReadingsAreNoEffectNoTouchAndNoError) {
     }
 }
 
+/// An actuator at three quarters of what is recorded was an added inertia, a factor of the table and a damping.
+TEST_F(HeavePitchDiscovery, NamesAnActuatorThatTurnsTheBodyLess) {
+    dynamics::Measurements data = test::pitch_rig_runs(short_rig(), 5, 71);
+    for (dynamics::MeasuredRun& run : data.runs) {
+        core::Table table;
+        for (const core::Column& column : run.table.columns()) {
+            std::vector<double> values = column.numbers;
+            for (double& value : values) {
+                value /= column.name == "input_moment" ? 0.75 : 1;
+            }
+            table.add_numbers(column.name, column.unit, values);
+        }
+        run.table = table;
+    }
+    const Discovery found = discover(model_, data, quick());
+    ASSERT_EQ(found.verdict, "effect") << found.sentence;
+    ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+    EXPECT_EQ(found.effects[0].name, "moment_gain") << found.sentence;
+    const FoundParameter& gain = found.effects[0].parameters[0];
+    EXPECT_NEAR(gain.value, 0.75, std::max(4 * gain.sigma, 0.01)) << found.sentence;
+    dynamics::PredictOptions options;
+    options.horizon = 1;
+    EXPECT_LT(dynamics::predict(found.model, data, options).channels[1].in_noise, 1.4);
+    for (dynamics::MeasuredRun& run : data.runs) {  // without such a column it is not looked for
+        core::Table table;
+        for (const core::Column& column : run.table.columns()) {
+            if (column.name != "input_moment") {
+                table.add_numbers(column.name, column.unit, column.numbers);
+            }
+        }
+        run.table = table;
+    }
+    for (const FoundEffect& effect : discover(model_, data, quick()).alternatives) {
+        EXPECT_EQ(effect.name.find("moment_gain"), std::string::npos);
+    }
+}
+
 TEST_F(HeavePitchDiscovery, NamesAnEffectInTheForce) {
     PitchRig rig = short_rig();
     rig.force = [](const PitchMoment& now) { return -0.5 * now.rise; };
