@@ -170,7 +170,7 @@ void add_search(const Sources& from, Surrogates surrogates) {
         known.push_back(search.describe(at));
     }
     if (spec.objectives.size() > 1) {
-        front = search.pareto_front(15, spec.seed, progress);
+        front = search.pareto_front(15, 1, spec.seed, progress);
         designs_table(page, search, front, "Designs of which none is better in all objectives");
     }
     if (renderer) {

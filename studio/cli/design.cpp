@@ -204,6 +204,13 @@ int next(Shell& shell, const Arguments& a) {
                 core::format_number(c.sigma_after, 3) + "; it is solved with a chance of " +
                 core::format_number(100 * c.chance_solved, 3) + " %\n" + text_of(search, c);
     }
+    constexpr double hopeless = 0.01;  // chance that all limits hold
+    if (!designs.empty() && std::all_of(designs.begin(), designs.end(),
+                                        [](const tables::Candidate& c) { return c.chance_valid < hopeless; })) {
+        shell.show_warning(
+            "none of these designs meets all limits with a chance above 1 %, nor does any that is known of: runs there "
+            "would show where the limits lie; design optimise says which of them stand in the way");
+    }
     if (designs.size() < a.count) {
         text += (designs.empty() ? std::string("No design") : "Only " + core::counted(designs.size(), "design")) +
                 (designs.size() > 1 ? " that the plan has not yet meet" : " that the plan has not yet meets") +
@@ -258,11 +265,15 @@ int optimise(Shell& shell, const Arguments& a) {
     const auto surrogates = design.surrogates(shell.progress());
     const tables::DesignSearch search = design.search(surrogates);
     const auto best = search.optimum(a.sigmas, design.spec().seed, shell.progress());
-    const auto front = a.front > 0 ? search.pareto_front(a.front, design.spec().seed, shell.progress())
+    const auto front = a.front > 0 ? search.pareto_front(a.front, a.sigmas, design.spec().seed, shell.progress())
                                    : std::vector<tables::Candidate>{};
     json list = json::array();
     const std::string margin = core::counted_text(core::format_number(a.sigmas, 3), "standard deviation");
-    std::string text = best ? "Best by the surrogates, with every limit met by " + margin +
+    const auto& objectives = search.problem().objectives;
+    const std::string of_first = objectives.size() < 2 ? std::string()
+                                                       : " in the first of " + std::to_string(objectives.size()) +
+                                                             " objectives alone (--front weighs none of them)";
+    std::string text = best ? "Best by the surrogates" + of_first + ", with every limit met by " + margin +
                                   ". It is a prediction: compute it.\n" + text_of(search, *best)
                             : "No design meets every limit by " + margin + ".\n";
     json excluded = json::array();

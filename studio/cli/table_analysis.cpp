@@ -215,6 +215,13 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
             document["trim"] = print_no_balance(shell, lift, moment, options);
         }
         show_coupled(shell, lift, found, options.virtual_mass > 0);
+        if (table.is_model()) {
+            shell.show_warning(
+                "these balances are of the model's tables alone, with moments about the point that the tables name: "
+                "the "
+                "vehicle's buoyancy and its centre of gravity are left out (linear MODEL balances the vehicle with "
+                "them)");
+        }
         document["equilibria"] = found;
         if (!windows && !command.picture.empty()) {
             write_picture(tables::coupled_figure(lift, moment, options), command.picture);

@@ -162,7 +162,7 @@ TEST_F(DesignFiles, ResultsOfAnySolverAreLearned) {
     ASSERT_TRUE(best);
     EXPECT_NEAR(best->at[0], 3e-3, 2e-4);  // the highest ridge
     EXPECT_NEAR(best->at[1], 0.72, 0.03);  // the cut in the middle
-    const auto front = search.pareto_front(8, 1);
+    const auto front = search.pareto_front(8, 1, 1);
     EXPECT_GE(front.size(), 1u);
     const auto next = search.next_designs(known.known());
     ASSERT_EQ(next.size(), 1u);

@@ -89,7 +89,7 @@ TEST_F(FiguresOfASearch, CoverageTellsThePlanFromWhatWasTypedAndWhatWasChosen) {
 TEST_F(FiguresOfASearch, TheFrontHasEachDesignOnceAndBodiesAtItsPoints) {
     const Design design = open();
     const tables::DesignSearch search = design.search(design.surrogates());
-    const auto front = search.pareto_front(10, 1);
+    const auto front = search.pareto_front(10, 1, 1);
     ASSERT_GT(front.size(), 3u);
     for (std::size_t i = 0; i < front.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {

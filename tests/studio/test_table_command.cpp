@@ -144,6 +144,30 @@ TEST(TableCommand, SaysWhatIsWrong) {
         2);
 }
 
+TEST(TableCommand, BalancesOfAModelsTablesAreNotTheVehicles) {
+    core::TemporaryFolder folder;
+    std::string table = "gap [mm], pitch [deg], lift_force [N], pitch_moment [N m]\n";
+    for (const int gap : {2, 5, 10, 20, 40}) {
+        for (const int pitch : {-4, -2, 0, 2, 4}) {
+            table += std::to_string(gap) + ", " + std::to_string(pitch) + ", " +
+                     core::format_number(2.0 / gap + 0.01 * pitch, 6) + ", " +
+                     core::format_number(0.004 - 0.002 * pitch, 6) + "\n";
+        }
+    }
+    core::write_file(folder.path() / "t.csv", table);
+    core::write_file(folder.path() / "m.toml",
+                     "[vehicle]\nmass = 2.2\nadded_mass_heave = 1.7\nnet_weight = 0.2\npitch_inertia = 0.007\n"
+                     "added_inertia_pitch = 0\nbase_depth = \"50 mm\"\nbase_half_length = \"70 mm\"\n"
+                     "buoyancy_height = \"5 mm\"\n[[force]]\nquantity = \"lift_force\"\ntable = \"t.csv\"\n"
+                     "[[force]]\nquantity = \"pitch_moment\"\ntable = \"t.csv\"\n");
+    const auto model = run_underbody({"table", "pitch", "m.toml", "--weight", "0.2 N"}, folder.path());
+    EXPECT_EQ(model.exit_code, 0) << model.errors;
+    EXPECT_THAT(model.output, HasSubstr("buoyancy and its centre of gravity are left out"));
+    const auto alone = run_underbody({"table", "pitch", "t.csv", "--weight", "0.2 N"}, folder.path());
+    EXPECT_EQ(alone.exit_code, 0) << alone.errors;
+    EXPECT_EQ(alone.output.find("left out"), std::string::npos);
+}
+
 TEST(TableCommand, RefusesAnAxisUnderAnotherName) {
     core::TemporaryFolder folder;
     for (const auto& [heading, name] :

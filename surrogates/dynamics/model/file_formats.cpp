@@ -66,7 +66,7 @@ std::string with_unit(double value, const std::string& unit) {
 /// What an undeclared number is: the value that a new model has.
 std::string fallback_of(const ModelItem& item) {
     static const std::map<std::string, std::string> said = {
-        {"vehicle.base_depth", "none: only motions with contact need it"},
+        {"vehicle.base_depth", "none: motions with pitch or contact need it"},
         {"contact.gap", "0, or the lower end of tables that reach below 0"},
     };
     if (item.required) {

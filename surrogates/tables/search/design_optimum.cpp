@@ -261,11 +261,10 @@ std::vector<Function> limits_from(const std::vector<Function>& objectives, std::
 
 }  // namespace
 
-std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, std::uint64_t seed,
+std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, double sigmas, std::uint64_t seed,
                                                   core::Progress& progress) const {
     const std::size_t axes = problem_.variables.size(), objectives = problem_.objectives.size();
-    // By a margin as the optimum has it: designs on a limit hold it with a chance of one half.
-    const OnTheCube cube(*this, 1);
+    const OnTheCube cube(*this, sigmas);
     std::vector<FrontPoint> points;
     const auto take = [&](std::vector<double> u) {
         if (cube.violation(u) > 1e-6) {

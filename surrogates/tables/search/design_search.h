@@ -117,8 +117,9 @@ public:
     /// when none does.
     [[nodiscard]] std::optional<Candidate> optimum(double sigmas, std::uint64_t seed,
                                                    core::Progress& progress = core::Progress::none()) const;
-    /// Designs of which none is better in all objectives, at most `count`, along the first objective.
-    [[nodiscard]] std::vector<Candidate> pareto_front(std::size_t count, std::uint64_t seed,
+    /// Designs of which none is better in all objectives, at most `count`, along the first objective; each meets every
+    /// limit by `sigmas` of its stated error (a design on a limit holds it with a chance of one half).
+    [[nodiscard]] std::vector<Candidate> pareto_front(std::size_t count, double sigmas, std::uint64_t seed,
                                                       core::Progress& progress = core::Progress::none()) const;
     /// The best of some designs as predicted (the first objective as something to be made small); NaN when none of them
     /// is valid by its mean.

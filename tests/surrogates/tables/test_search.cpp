@@ -487,7 +487,7 @@ TEST(Search, AFrontHoldsDesignsThatNoneBeats) {
                           {{"g", "g", {}, "", 0}, Objective::Sense::minimise, 0}};
     const DesignSearch search(problem, {{"f", Surrogate::fit("f", "1", variables, first)},
                                         {"g", Surrogate::fit("g", "1", variables, second)}});
-    const auto front = search.pareto_front(12, 1);
+    const auto front = search.pareto_front(12, 1, 1);
     ASSERT_GE(front.size(), 8u);
     for (std::size_t i = 0; i < front.size(); ++i) {
         EXPECT_GT(front[i].at[0], -0.05);
@@ -521,11 +521,14 @@ TEST(Search, AFrontMeetsItsLimitsByAMargin) {
     const DesignSearch search(problem, {{"f", Surrogate::fit("f", "1", variables, first)},
                                         {"g", Surrogate::fit("g", "1", variables, second)},
                                         {"h", Surrogate::fit("h", "1", variables, third)}});
-    const auto front = search.pareto_front(12, 1);
+    const auto front = search.pareto_front(12, 1, 1);
     ASSERT_FALSE(front.empty());
     for (const Candidate& c : front) {
         EXPECT_GE(c.limits[0].value - 0.999 * c.limits[0].sigma, 0.5);
         EXPECT_GT(c.chance_valid, 0.84);
+    }
+    for (const Candidate& c : search.pareto_front(12, 2, 1)) {
+        EXPECT_GT(c.chance_valid, 0.977);
     }
 }
 
