@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/model/force_error.h"
 #include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::discovery {
@@ -33,6 +34,51 @@ dynamics::Measurements reduced(const dynamics::Measurements& raw) {
 
 }  // namespace
 
+namespace {
+
+/// A law without a name that is as large as what the declared tables say of their own error may be that error: said
+/// beside the verdict. Empty otherwise, and where the tables state none.
+std::string as_large_as_the_tables_error(const dynamics::Model& model, const Discovery& found) {
+    constexpr double as_large = 2;  // standard deviations
+    if (found.verdict != "unknown" || found.effects.empty() || found.effects.front().uses.size() != 1 ||
+        !found.effects.front().uses.front().table) {
+        return {};
+    }
+    const dynamics::EffectUse& use = found.effects.front().uses.front();
+    const std::string quantity = use.quantity.empty() ? use.table->quantity() : use.quantity;
+    const core::Table& points = use.table->points();
+    double corrected = 0, error = 0;
+    try {
+        const dynamics::ForceError sigma(model, quantity);
+        for (std::size_t row = 0; row < points.rows(); ++row) {
+            const double value = points.numbers(quantity)[row];
+            dynamics::Conditions at = model.conditions;
+            for (const tables::TableAxis& axis : use.table->axes()) {
+                dynamics::Channel channel{};
+                if (!dynamics::find_channel(axis.name, channel)) {
+                    return {};
+                }
+                at[channel] = points.numbers(axis.name)[row];
+            }
+            if (value != 0) {  // else it has faded
+                corrected += value * value;
+                error += std::pow(sigma(at), 2);
+            }
+        }
+    } catch (const core::Error&) {
+        return {};  // the error hangs on a condition that nobody said
+    }
+    if (!(corrected > 0) || !(corrected <= as_large * as_large * error)) {
+        return {};
+    }
+    const double ratio = std::sqrt(corrected / error);
+    return " It is no larger than what the declared tables say of their own error there (" +
+           core::format_number(ratio, 2) + " of it): it may be that error and no effect; more points of the table " +
+           "would tell.";
+}
+
+}  // namespace
+
 Discovery discover(const dynamics::Model& model, const dynamics::Measurements& measured, const DiscoverOptions& options,
                    core::Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
@@ -44,6 +90,7 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
     if (result.verdict == "none") {
         result.depends_on.clear();  // noise depends on nothing
     }
+    result.sentence += as_large_as_the_tables_error(model, result);
     result.model.lineage.made_from.push_back(
         "made by underbody discover from " + model.name + " and the measurements '" +
         (data.title.empty() ? std::filesystem::weakly_canonical(data.folder).filename().string() : data.title) + "'");

@@ -74,7 +74,7 @@ TEST_F(SolveCommands, SweepGoesOnPastACaseThatFailsAndKeepsItsLogs) {
     program("checkMesh", "case \"$PWD\" in *h5*) echo 'mesh is bad'; exit 1;; esac; echo; echo End");
     const auto sweep = run({"sweep", "study", "--jobs", "1"});
     EXPECT_EQ(sweep.exit_code, 3);
-    EXPECT_THAT(sweep.output, HasSubstr("ellipse-h10-p1-u0.5: solved"));
+    EXPECT_THAT(sweep.output, HasSubstr("ellipse-h10-p1-u0.5: solved")) << sweep.errors;
     EXPECT_THAT(sweep.errors, HasSubstr("mesh is bad"));
     EXPECT_TRUE(fs::exists(folder_.path() / "study/runs/ellipse-h5-p1-u0.5.failed/log.checkMesh"));
     EXPECT_EQ(list()["ellipse-h5-p1-u0.5"]["state"], "failed");

@@ -138,6 +138,31 @@ TEST(HeaveDiscovery, CallsALawOutsideTheCatalogueUnknownOverItsVariable) {
     EXPECT_LT(found.error.front().after.rmse, 0.6 * found.error.front().before.rmse);
 }
 
+/// A table of twelve points of the same lift: what it misses between them is no effect, and it says so itself.
+TEST(HeaveDiscovery, SaysThatALawIsNoLargerThanTheTablesOwnError) {
+    core::TemporaryFolder folder;
+    test::heave_model(folder.path());
+    std::string table = "gap [m], lift_force [N]\n";
+    for (const double h : {0.001, 0.02, 0.05, 0.08, 0.12, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.6}) {
+        table += test::written(h) + ", " + test::written(test::lift_of(h)) + "\n";
+    }
+    core::write_file(folder.path() / "lift.csv", table);
+    const dynamics::Model coarse = dynamics::read_model(folder.path() / "model.toml");
+    DiscoverOptions quick;
+    quick.figures = quick.consequence = false;
+    quick.placebo_twins = 2;
+    const auto nothing = [](double, double, double) { return 0.0; };
+    const Discovery found = discover(coarse, test::heave_runs(nothing, 8, 20, 5, {.noise = 5e-5}), quick);
+    ASSERT_EQ(found.verdict, "unknown") << found.sentence;
+    EXPECT_NE(found.sentence.find("what the declared tables say of their own error"), std::string::npos)
+        << found.sentence;
+    // a ring that is far larger is not excused by it
+    const auto ring = [](double, double h, double) { return 0.02 * std::sin(h / 0.015); };
+    const Discovery real = discover(coarse, test::heave_runs(ring, 8, 20, 5), quick);
+    ASSERT_EQ(real.verdict, "unknown") << real.sentence;
+    EXPECT_EQ(real.sentence.find("their own error"), std::string::npos) << real.sentence;
+}
+
 TEST(HeaveDiscovery, DoesNotTakeASlowChangeForAWave) {
     const Discovery found = found_on([](double t, double, double) { return 0.006 * std::tanh((t - 15) / 6); }, 7);
     ASSERT_NE(found.verdict, "none") << found.sentence;
