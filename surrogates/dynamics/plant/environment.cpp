@@ -4,6 +4,7 @@
 
 #include "surrogates/dynamics/model/table_notes.h"
 #include "surrogates/dynamics/plant/contact_gap.h"
+#include "surrogates/dynamics/plant/longest_step.h"
 
 namespace underbody::dynamics {
 
@@ -41,10 +42,7 @@ Surroundings RecordedInputs::at(double t, const double* memory) {
 double RecordedInputs::max_step() const {
     double step = 0;
     if (run_) {
-        step = std::numeric_limits<double>::max();
-        for (std::size_t i = 0; i + 1 < run_->samples(); ++i) {
-            step = std::min(step, run_->time()[i + 1] - run_->time()[i]);
-        }
+        step = longest_step(run_->time());
     }
     for (const HeaveTerms::Wave& wave : vertical_.terms.waves) {
         const double part = 0.1 / std::max(wave.frequency, 1e-9);

@@ -9,6 +9,7 @@
 #include "surrogates/dynamics/model/simulated_columns.h"
 #include "surrogates/dynamics/plant/environment.h"
 #include "surrogates/dynamics/plant/heave.h"
+#include "surrogates/dynamics/plant/longest_step.h"
 #include "surrogates/dynamics/plant/loop_actuator.h"
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/motion_driver.h"
@@ -143,10 +144,7 @@ double Flight::max_step() const {
     // Recorded inputs have corners that the integrator must not step over.
     double step = 0;
     if (run_) {
-        step = core::no_limit;
-        for (std::size_t i = 0; i + 1 < run_->samples(); ++i) {
-            step = std::min(step, run_->time()[i + 1] - run_->time()[i]);
-        }
+        step = longest_step(run_->time());
     }
     for (const HeaveTerms::Wave& wave : plant_.terms.waves) {
         const double period = 0.1 / std::max(wave.frequency, 1e-9);

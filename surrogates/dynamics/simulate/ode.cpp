@@ -119,6 +119,8 @@ Ode::Ode(OdeProblem problem, OdeOptions options) : impl_(std::make_unique<Impl>(
     CVodeSetUserData(m.memory, &m);
     CVodeSVtolerances(m.memory, m.options.relative, m.tolerance);
     CVodeSetMaxNumSteps(m.memory, m.options.max_steps);
+    constexpr int failures = 40;  // of one step in a row: as many halve a second to the width of a jump
+    CVodeSetMaxErrTestFails(m.memory, failures);
     m.matrix = SUNDenseMatrix(size, size, m.context);
     m.solver = SUNLinSol_Dense(m.y, m.matrix, m.context);
     CVodeSetLinearSolver(m.memory, m.solver, m.matrix);

@@ -87,6 +87,22 @@ TEST(Heave, RestsOnTheGroundUntilTheInputLiftsIt) {
     EXPECT_NEAR(motion.gap.back(), 0.125 / 12 + 0.0625 * 2 + 0.25 * 2, 1e-6);
 }
 
+/// A jump written as two rows a microsecond apart made steps of a microsecond all along: ten million rows.
+TEST(Heave, AJumpOfTheInputTakesNoTinySteps) {
+    const Model model = test::free_model(2.0, 0.5, 0, 0);
+    InputSignals inputs;
+    inputs.time = {0, 2, 2.000001, 10};
+    inputs.signals = {{Channel::input_force, {0, 0, 1, 1}}};
+    TrajectoryOptions options;
+    options.duration = 4;
+    for (const double step : {0.0, 0.5}) {
+        options.output_step = step;
+        const Trajectory motion = simulate(model, 5, 0, inputs, options);
+        EXPECT_LT(motion.time.size(), 1000U) << step;
+        EXPECT_NEAR(motion.gap.back(), 4, 1e-6) << step;  // 2 s down at 0.25 m/s^2, then 2 s up
+    }
+}
+
 TEST(Heave, WritesOneRowAnOutputStep) {
     TrajectoryOptions options;
     for (const double step : {.1, .3, .7, 1.0 / 3}) {
