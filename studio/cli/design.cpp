@@ -208,8 +208,8 @@ int next(Shell& shell, const Arguments& a) {
     if (!designs.empty() && std::all_of(designs.begin(), designs.end(),
                                         [](const tables::Candidate& c) { return c.chance_valid < hopeless; })) {
         shell.show_warning(
-            "none of these designs meets all limits with a chance above 1 %, nor does any that is known of: runs there "
-            "would show where the limits lie; design optimise says which of them stand in the way");
+            "none of these designs meets all limits with a chance above 1 %: runs there would show where the limits "
+            "lie; design optimise says which of them stand in the way");
     }
     if (designs.size() < a.count) {
         text += (designs.empty() ? std::string("No design") : "Only " + core::counted(designs.size(), "design")) +

@@ -218,8 +218,7 @@ int run_pitch(Shell& shell, const PitchCommand& command) {
         if (table.is_model()) {
             shell.show_warning(
                 "these balances are of the model's tables alone, with moments about the point that the tables name: "
-                "the "
-                "vehicle's buoyancy and its centre of gravity are left out (linear MODEL balances the vehicle with "
+                "the vehicle's buoyancy and its centre of gravity are left out (linear MODEL balances the vehicle with "
                 "them)");
         }
         document["equilibria"] = found;

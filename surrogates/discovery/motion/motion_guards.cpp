@@ -229,11 +229,13 @@ std::optional<dynamics::EffectUse> MotionLoop::smooth_force() const {
 }
 
 bool MotionLoop::correct(const Answer& before) {
-    const std::optional<dynamics::EffectUse> force = smooth_force();
-    if (!force || !falls(before, answer_of({*force}, options_.horizon))) {
+    if (!smooth_force_) {
+        smooth_force_ = smooth_force();
+    }
+    if (!*smooth_force_ || !falls(before, answer_of({**smooth_force_}, options_.horizon))) {
         return false;
     }
-    uses_ = {*force};
+    uses_ = {**smooth_force_};
     return true;
 }
 

@@ -96,7 +96,7 @@ private:
     [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;
     /// A smooth force up in the place of a law without a name, where the likeliest smooth load is one.
     [[nodiscard]] std::optional<dynamics::EffectUse> smooth_force() const;
-    /// Puts it into the model where the held-out error falls by it.
+    /// Puts it (fitted once) into the model where the held-out error falls by it.
     bool correct(const Answer& before);
     void decide();
     void guard();
@@ -131,7 +131,8 @@ private:
     std::vector<std::size_t> candidate_of_;  ///< of the single ones among fitted_
     std::size_t best_single_ = 0;
     SmoothFit whole_;
-    std::optional<MotionSmooth> likeliest_smooth_;  ///< that whole_ is of
+    std::optional<MotionSmooth> likeliest_smooth_;                    ///< that whole_ is of
+    std::optional<std::optional<dynamics::EffectUse>> smooth_force_;  ///< once it was asked for
     Rest rest_;
     double gate_ = 1;
     Attribution attribution_;
