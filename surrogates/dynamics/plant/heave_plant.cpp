@@ -262,6 +262,9 @@ double HeavePlant::damping(double h) const {
     for (const auto& [w, load] : {std::pair{speed, &up}, std::pair{-speed, &down}}) {
         add_water_drag<false>(terms, w, *load);
         add_guided_resistance<false>(terms, h, w, 0, *load);
+        add_corrections(terms, h, w, {}, held_, *load);  // over gap and velocity at once
+        add_extras(terms, 0, h, w, *load);
+        load->force += table_lift(h, w).force;
     }
     const double friction = 2 * terms.friction * speed / std::hypot(speed, terms.friction_width);
     return (down.force - up.force - friction) / (2 * speed);
