@@ -212,12 +212,10 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
     return runs;
 }
 
-constexpr std::size_t most_variables = 10;  ///< of a tables::Surrogate
-
 /// Before anything is computed: what no surrogate can learn is not worth a run.
 void check_count(const DesignSpec& spec, const Study& study) {
     const auto all = spec.all_variables();
-    if (all.size() <= most_variables) {
+    if (all.size() <= tables::Surrogate::most_variables) {
         return;
     }
     std::string conditions;
@@ -228,7 +226,7 @@ void check_count(const DesignSpec& spec, const Study& study) {
                            "[design] has " + std::to_string(all.size()) + " variables: " +
                                core::counted(spec.variables.size(), "number") + " of the shape" + conditions,
                            {(study.folder() / "study.toml").string(), {}, {}, {}},
-                           "surrogates learn " + std::to_string(most_variables) +
+                           "surrogates learn " + std::to_string(tables::Surrogate::most_variables) +
                                " at most: vary fewer numbers, or give a condition one value");
 }
 

@@ -26,7 +26,6 @@ double SearchVariable::scaled_slope(double value) const {
 
 namespace {
 
-constexpr std::size_t most_variables = 10;
 /// The factor of the stated errors starts as if there had been this many shapes left out whose errors were as stated: a
 /// handful of shapes says little.
 constexpr double shapes_of_prior = 4;
@@ -36,8 +35,9 @@ void check_runs(const std::string& quantity, const std::vector<SearchVariable>& 
     const auto refuse = [&](const std::string& what, const std::string& hint) {
         throw core::InputError("surrogate", "a surrogate of " + quantity + ": " + what, {}, hint);
     };
-    if (variables.empty() || variables.size() > most_variables) {
-        refuse(std::to_string(variables.size()) + " variables", "between one and ten can be learned");
+    if (variables.empty() || variables.size() > Surrogate::most_variables) {
+        refuse(std::to_string(variables.size()) + " variables",
+               "between one and " + std::to_string(Surrogate::most_variables) + " can be learned");
     }
     if (runs.size() < 3) {
         refuse("only " + std::to_string(runs.size()) + " runs", "at least three are needed, and about ten a variable");

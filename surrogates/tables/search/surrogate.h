@@ -62,8 +62,9 @@ struct LeftOutCheck {
 /// Immutable.
 class Surrogate {
 public:
-    /// Throws core::InputError: fewer than three runs, one shape only, values that are not finite, more than ten
-    /// variables, a variable with one value everywhere.
+    static constexpr std::size_t most_variables = 10;
+    /// Throws core::InputError: fewer than three runs, one shape only, values that are not finite, more variables than
+    /// that, a variable with one value everywhere.
     static Surrogate fit(std::string quantity, std::string unit, std::vector<SearchVariable> variables,
                          const std::vector<SearchRun>& runs, core::Progress& progress = core::Progress::none());
 
