@@ -10,7 +10,7 @@
 #include <QSignalBlocker>
 #include <QSplitter>
 #include <QStackedWidget>
-#include <QTableWidget>
+#include <QTableView>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +22,7 @@
 #include "geometry/body/body_figures.h"
 #include "studio/desktop/case_pictures.h"
 #include "studio/desktop/compare_sheet.h"
+#include "studio/desktop/kept_rows.h"
 #include "studio/desktop/natural_order.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/plot_view.h"
@@ -99,7 +100,10 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     lines_cell_ = new ViewCell(*this, "lines", "Lines", parallel_);
     halves->addWidget(lines_cell_);
     lower_ = new QSplitter(Qt::Horizontal);
-    table_ = new QTableWidget;
+    table_ = new QTableView;
+    table_rows_ = new KeptRows(table_);
+    table_->setModel(table_rows_);
+    table_->horizontalHeader()->setResizeContentsPrecision(60);  // rows that a width is made for: of ten thousand, some
     table_->setAccessibleName("What is kept");
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
     table_->setSelectionBehavior(QAbstractItemView::SelectRows);
@@ -132,11 +136,11 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
                                 (low < high ? core::format_number(low, 6) + ":" + core::format_number(high, 6)
                                             : std::string())});
     });
-    connect(table_, &QTableWidget::itemSelectionChanged, this, [this] {
+    connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
         take_->setEnabled(state().explore.shapes && !table_->selectionModel()->selectedRows().isEmpty());
         Words words = {"select"};
         for (const auto& index : table_->selectionModel()->selectedRows()) {
-            words.push_back("case/" + table_->item(index.row(), 0)->text().toStdString());
+            words.push_back("case/" + index.data().toString().toStdString());
         }
         if (words.size() > 1 && !state().explore.shapes) {
             desk_.act(words);
@@ -269,13 +273,7 @@ void ExplorePanel::draw_again(bool) {
         }
     }
     kept_ = core::rows_within(table, ranges);
-    std::vector<std::pair<QString, std::size_t>> named;
-    for (const std::size_t row : kept_) {
-        named.emplace_back(qt(name_of_row(row)), row);
-    }
-    std::stable_sort(named.begin(), named.end(),
-                     [](const auto& a, const auto& b) { return natural_less(a.first, b.first); });
-    std::transform(named.begin(), named.end(), kept_.begin(), [](const auto& one) { return one.second; });
+    sort_kept();
     if (!brush_->isModified()) {
         brush_->setText(said.join(", "));
         brush_->setModified(false);
@@ -285,6 +283,19 @@ void ExplorePanel::draw_again(bool) {
     fill_table();
     draw_scatter();
     draw_pictures();
+}
+
+/// By name, as the tree does. Where a name stands among all is found once for all that is brushed.
+void ExplorePanel::sort_kept() {
+    if (ranks_of_ != axes_of_ || ranks_.size() != rows().rows()) {
+        ranks_of_ = axes_of_;
+        std::vector<QString> names;
+        for (std::size_t row = 0; row < rows().rows(); ++row) {
+            names.push_back(qt(name_of_row(row)));
+        }
+        ranks_ = natural_ranks(names);
+    }
+    std::sort(kept_.begin(), kept_.end(), [this](std::size_t a, std::size_t b) { return ranks_[a] < ranks_[b]; });
 }
 
 void ExplorePanel::show_cells() {
@@ -319,36 +330,25 @@ void ExplorePanel::show_count() {
 }
 
 void ExplorePanel::fill_table() {
-    const QSignalBlocker quiet(table_);
+    const bool shapes = state().explore.shapes;
     const core::Table& all = rows();
-    const auto columns = columns_of(all);
-    QStringList titles = {state().explore.shapes ? "shape" : "case"};
-    for (const auto* column : columns) {
-        titles << qt(axis_title(axis_words(column->name).toStdString(), unit_of(*column)));
+    std::vector<KeptRows::Column> columns;
+    for (const auto* column : columns_of(all)) {
+        const std::string unit = unit_of(*column);
+        columns.push_back({qt(axis_title(axis_words(column->name).toStdString(), unit)), column,
+                           core::conversion(column->unit, unit)});
     }
-    const auto* refused = state().explore.shapes ? all.find("refused") : nullptr;
-    table_->setColumnCount(titles.size());
-    table_->setHorizontalHeaderLabels(titles);
-    const std::size_t count = std::min<std::size_t>(kept_.size(), 2000);
-    table_->setRowCount(static_cast<int>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::string name = name_of_row(kept_[i]);
-        const bool starred = state().stars.contains("case/" + name);
-        auto* first = new QTableWidgetItem(qt(name));
-        first->setToolTip(refused != nullptr && refused->text[kept_[i]] != "-" ? qt(refused->text[kept_[i]])
-                          : starred                                            ? QString("starred")
-                                                                               : QString());
-        QFont font = table_->font();
-        font.setBold(starred);
-        first->setFont(font);
-        table_->setItem(static_cast<int>(i), 0, first);
-        for (std::size_t k = 0; k < columns.size(); ++k) {
-            const double value = core::convert(columns[k]->numbers[kept_[i]], columns[k]->unit, unit_of(*columns[k]));
-            auto* item = new QTableWidgetItem(std::isfinite(value) ? qt(core::format_number(value, 4)) : QString("–"));
-            item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
-            table_->setItem(static_cast<int>(i), static_cast<int>(k) + 1, item);
-        }
-    }
+    const auto* refused = shapes ? all.find("refused") : nullptr;
+    const auto* names = all.find(shapes ? "name" : "case");
+    const auto name = [names, held = std::pair(desk_.session_pointer(), shapes_)](std::size_t row) {
+        return names != nullptr && names->is_text() ? names->text[row] : std::to_string(row);
+    };
+    table_rows_->show(shapes ? "shape" : "case", std::move(columns), kept_,
+                      {[name](std::size_t row) { return qt(name(row)); },
+                       [refused](std::size_t row) {
+                           return refused != nullptr && refused->text[row] != "-" ? qt(refused->text[row]) : QString();
+                       },
+                       [this, name](std::size_t row) { return state().stars.contains("case/" + name(row)); }});
     table_->resizeColumnsToContents();
     take_->setEnabled(false);
 }

@@ -14,12 +14,13 @@ class QLineEdit;
 class QPushButton;
 class QSplitter;
 class QStackedWidget;
-class QTableWidget;
+class QTableView;
 class QVBoxLayout;
 
 namespace underbody::studio {
 
 class CasePictures;
+class KeptRows;
 class ParallelView;
 class PlotView;
 class SideBySide;
@@ -58,6 +59,7 @@ private:
     void draw_scatter();
     void draw_pictures();
     void show_count();
+    void sort_kept();
     void show_cells();
     void type_brush();
     void type_vary();
@@ -69,6 +71,8 @@ private:
     std::shared_ptr<const MadeShapes> shapes_;
     std::string shapes_of_;  ///< what they are made of, or being made
     std::string axes_of_;
+    std::string ranks_of_;    ///< as axes_of_
+    std::vector<int> ranks_;  ///< of the rows, in the natural order of their names
     QComboBox* what_ = nullptr;
     QComboBox* parameter_ = nullptr;
     QLineEdit* vary_ = nullptr;
@@ -88,7 +92,8 @@ private:
     QStackedWidget* pictures_ = nullptr;  ///< bodies, or cases
     PlotView* bodies_ = nullptr;
     CasePictures* cases_ = nullptr;
-    QTableWidget* table_ = nullptr;
+    QTableView* table_ = nullptr;
+    KeptRows* table_rows_ = nullptr;
 };
 
 }  // namespace underbody::studio

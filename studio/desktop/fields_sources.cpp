@@ -55,6 +55,9 @@ FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) co
 std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
     std::vector<Source> sources;
     const auto add = [&](const std::string& id) {
+        if (sources.size() == most_cells) {
+            return;  // thousands may be chosen
+        }
         if (id.starts_with("field/")) {
             sources.push_back(source_of(std::filesystem::path(id.substr(6))));
         }
@@ -89,9 +92,6 @@ std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
             }
         }
         sources.push_back(source_of(*chosen));
-    }
-    if (sources.size() > most_cells) {
-        sources.resize(most_cells);
     }
     for (auto& source : sources) {
         source.reading.time = state().fields.time;

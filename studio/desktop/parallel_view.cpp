@@ -60,6 +60,7 @@ void ParallelView::show_brush(const std::map<std::string, std::array<double, 2>>
                               const std::vector<std::size_t>& kept) {
     brush_ = brush;
     kept_ = kept;
+    bright_ = {};
     update();
 }
 
@@ -99,6 +100,35 @@ void ParallelView::draw_line(QPainter& painter, std::size_t row) const {
     painter.drawPath(path);
 }
 
+/// All lines and the kept ones, each drawn once: a range that is dragged moves over them.
+void ParallelView::draw_layers() {
+    const auto begin = [this](QPixmap& layer) {
+        layer = QPixmap(size() * devicePixelRatioF());
+        layer.setDevicePixelRatio(devicePixelRatioF());
+        layer.fill(Qt::transparent);
+    };
+    if (pale_.size() != size() * devicePixelRatioF()) {
+        begin(pale_);
+        QPainter painter(&pale_);
+        QColor colour = palette().text().color();
+        colour.setAlpha(40);
+        painter.setPen(colour);
+        for (std::size_t row = 0; row < axes_.front().values.size(); ++row) {
+            draw_line(painter, row);
+        }
+        bright_ = {};
+    }
+    if (bright_.isNull()) {
+        begin(bright_);
+        QPainter painter(&bright_);
+        painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
+        painter.setPen(QPen(palette().highlight().color(), 1.4));
+        for (const std::size_t row : kept_) {
+            draw_line(painter, row);
+        }
+    }
+}
+
 void ParallelView::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.fillRect(rect(), palette().base());
@@ -107,24 +137,10 @@ void ParallelView::paintEvent(QPaintEvent*) {
         painter.drawText(rect(), Qt::AlignCenter, empty_);
         return;
     }
-    if (pale_.size() != size() * devicePixelRatioF()) {
-        pale_ = QPixmap(size() * devicePixelRatioF());
-        pale_.setDevicePixelRatio(devicePixelRatioF());
-        pale_.fill(Qt::transparent);
-        QPainter pale(&pale_);
-        QColor colour = palette().text().color();
-        colour.setAlpha(40);
-        pale.setPen(colour);
-        for (std::size_t row = 0; row < axes_.front().values.size(); ++row) {
-            draw_line(pale, row);
-        }
-    }
+    draw_layers();
     painter.drawPixmap(0, 0, pale_);
+    painter.drawPixmap(0, 0, bright_);
     painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
-    painter.setPen(QPen(palette().highlight().color(), 1.4));
-    for (const std::size_t row : kept_) {
-        draw_line(painter, row);
-    }
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const Axis& axis = axes_[i];
         const double x = x_of(i);

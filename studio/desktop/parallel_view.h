@@ -32,6 +32,9 @@ public:
     [[nodiscard]] int head() const { return head_; }
     [[nodiscard]] QSize minimumSizeHint() const override { return {300, 150}; }
 
+    /// Where an axis stands, px.
+    [[nodiscard]] double x_of(std::size_t axis) const;
+
 Q_SIGNALS:
     /// A range was dragged on an axis; lower == upper: cleared by a click.
     void brushed(const QString& column, double lower, double upper);
@@ -46,11 +49,11 @@ protected:
     void keyPressEvent(QKeyEvent* event) override;
 
 private:
-    [[nodiscard]] double x_of(std::size_t axis) const;
     [[nodiscard]] double y_of(const Axis& axis, double value) const;
     [[nodiscard]] double value_at(const Axis& axis, double y) const;
     void move_end(bool upper, int by);
     void draw_line(QPainter& painter, std::size_t row) const;
+    void draw_layers();
     [[nodiscard]] static QString title_of(const Axis& axis);
     [[nodiscard]] double title_room() const;
     void give_titles_room();
@@ -58,7 +61,8 @@ private:
     std::vector<Axis> axes_;
     std::map<std::string, std::array<double, 2>> brush_;
     std::vector<std::size_t> kept_;
-    QPixmap pale_;  ///< all lines, drawn once
+    QPixmap pale_;    ///< all lines, drawn once
+    QPixmap bright_;  ///< the kept ones
     QString empty_;
     int head_ = 60;  ///< px above the axes: titles and largest values
     int pressed_ = -1;

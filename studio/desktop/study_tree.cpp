@@ -72,7 +72,7 @@ void StudyModel::read() {
     const auto& study = session_->study;
     groups_.clear();
     const auto add = [&](const char* kind, const char* title, auto&& things, auto&& name_of_thing) {
-        Group group{kind, title, {}, {}};
+        Group group{kind, title, {}, {}, {}};
         for (const auto& thing : things) {
             group.names.push_back(name_of_thing(thing));
         }
@@ -105,6 +105,13 @@ void StudyModel::read() {
                                              : found == ExportState::missing ? "  –  GONE"
                                                                              : ""));
         }
+    }
+    for (Group& group : groups_) {
+        std::vector<QString> texts;
+        for (std::size_t row = 0; row < group.names.size(); ++row) {
+            texts.push_back(text(group, row));
+        }
+        group.ranks = natural_ranks(texts);
     }
     endResetModel();
     places_.clear();
@@ -165,22 +172,26 @@ double StudyModel::number(std::size_t entry, int column) const {
     }
 }
 
+/// What is written of a thing, without its marks.
+QString StudyModel::text(const Group& group, std::size_t row) const {
+    return group.kind == "picture" || group.kind == "export" ? group.titles.at(row)
+           : group.kind == "field"                           ? qt(group.names[row]).section('/', -1)
+                                                             : qt(group.names[row]);
+}
+
 QVariant StudyModel::cell(const Group& group, std::size_t row, int column, int role) const {
+    if (column == name && role == sort_role) {
+        return group.ranks[row];
+    }
     const std::string id = group.kind + "/" + group.names[row];
     if (role == id_role) {
         return qt(id);
     }
     if (column == name) {
-        if (role == Qt::DisplayRole || role == sort_role) {
+        if (role == Qt::DisplayRole) {
             const bool changed = group.kind == "shape" && desk_.state().design.changes.contains(group.names[row]);
-            const bool starred = role == Qt::DisplayRole && desk_.state().stars.contains(id);
-            QString text = qt(group.names[row]);
-            if (group.kind == "picture" || group.kind == "export") {
-                text = group.titles.at(row);
-            } else if (group.kind == "field") {
-                text = text.section('/', -1);
-            }
-            return (starred ? QString("★ ") : QString()) + text + (changed ? " *" : "");
+            return (desk_.state().stars.contains(id) ? QString("★ ") : QString()) + text(group, row) +
+                   (changed ? " *" : "");
         }
         if (role == Qt::ToolTipRole) {
             return group.kind == "case" ? tip(*session_, row) : qt(group.names[row]);
@@ -243,6 +254,9 @@ bool StudyFilter::lessThan(const QModelIndex& left, const QModelIndex& right) co
         const bool ascending = sortOrder() == Qt::AscendingOrder;
         return ascending ? left.row() < right.row() : left.row() > right.row();
     }
+    if (mine.type() == QVariant::Int && others.type() == QVariant::Int) {
+        return mine.toInt() < others.toInt();
+    }
     if (mine.type() == QVariant::Double && others.type() == QVariant::Double) {
         return mine.toDouble() < others.toDouble();
     }
@@ -291,19 +305,27 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
 /// room.
 void StudyTree::give_names_room() {
     constexpr int most = 220;
-    const QFontMetrics metrics(font());
-    int widest = metrics.horizontalAdvance("Study");
-    for (const auto& one : desk_.session().study.cases) {
-        widest = std::max(widest, metrics.horizontalAdvance(qt(one.name)));
-        if (widest >= most) {
-            break;
+    constexpr std::size_t looked_at = 200;  // the longest of thousands: each takes microseconds
+    if (measured_ != desk_.session_pointer()) {
+        measured_ = desk_.session_pointer();
+        const QFontMetrics metrics(font());
+        widest_ = metrics.horizontalAdvance("Study");
+        std::vector<const std::string*> names;
+        for (const auto& one : measured_->study.cases) {
+            names.push_back(&one.name);
+        }
+        const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(looked_at, names.size()));
+        std::partial_sort(names.begin(), end, names.end(),
+                          [](const auto* a, const auto* b) { return a->size() > b->size(); });
+        for (auto name = names.begin(); name != end; ++name) {
+            widest_ = std::max(widest_, metrics.horizontalAdvance(qt(**name)));
         }
     }
     int others = 0;
     for (int column = StudyModel::gap; column < StudyModel::column_count; ++column) {
         others += header()->sectionSize(column);
     }
-    const int wanted = std::min(widest, most) + 2 * indentation() + 12;
+    const int wanted = std::min(widest_, most) + 2 * indentation() + 12;
     header()->resizeSection(StudyModel::name, std::max(wanted, viewport()->width() - others));
 }
 
@@ -358,16 +380,32 @@ void StudyTree::read_again() {
     Q_EMIT counted(count());
 }
 
+/// Rows that follow one another are one range: Qt compares every range with every other, a minute for ten thousand.
+QItemSelection StudyTree::ranges_of(std::vector<QModelIndex> rows) {
+    std::sort(rows.begin(), rows.end(), [](const QModelIndex& a, const QModelIndex& b) {
+        return std::pair(a.parent().row(), a.row()) < std::pair(b.parent().row(), b.row());
+    });
+    QItemSelection ranges;
+    for (std::size_t i = 0, next = 0; i < rows.size(); i = next) {
+        for (next = i + 1; next < rows.size() && rows[next].parent() == rows[i].parent() &&
+                           rows[next].row() == rows[next - 1].row() + 1;) {
+            ++next;
+        }
+        const QModelIndex& last = rows[next - 1];
+        ranges.append(QItemSelectionRange(rows[i], last.sibling(last.row(), StudyModel::column_count - 1)));
+    }
+    return ranges;
+}
+
 void StudyTree::show_selection() {
-    QItemSelection wanted;
-    QModelIndex first;
+    std::vector<QModelIndex> rows;
     for (const auto& id : desk_.state().selection) {
-        const QModelIndex at = proxy_->mapFromSource(model_->find(id));
-        if (at.isValid()) {
-            wanted.select(at, at.sibling(at.row(), StudyModel::column_count - 1));
-            first = first.isValid() ? first : at;
+        if (const QModelIndex at = proxy_->mapFromSource(model_->find(id)); at.isValid()) {
+            rows.push_back(at);
         }
     }
+    const QModelIndex first = rows.empty() ? QModelIndex() : rows.front();
+    const QItemSelection wanted = ranges_of(std::move(rows));
     if (wanted != selectionModel()->selection()) {
         const bool was = std::exchange(quiet_, true);
         selectionModel()->select(wanted, QItemSelectionModel::ClearAndSelect);

@@ -36,7 +36,9 @@ private:
         QString title;
         std::vector<std::string> names;
         std::vector<QString> titles;  ///< of pictures
+        std::vector<int> ranks;       ///< of what is shown, in its natural order
     };
+    [[nodiscard]] QString text(const Group& group, std::size_t row) const;
     [[nodiscard]] QVariant cell(const Group& group, std::size_t row, int column, int role) const;
     [[nodiscard]] double number(std::size_t entry, int column) const;
 
@@ -84,6 +86,7 @@ private:
     [[nodiscard]] Look look() const;
     void read_again();
     void give_names_room();
+    static QItemSelection ranges_of(std::vector<QModelIndex> rows);
     void show_selection();
     void take_selection();
 
@@ -91,6 +94,8 @@ private:
     StudyModel* model_ = nullptr;
     StudyFilter* proxy_ = nullptr;
     SessionPointer shown_;
+    SessionPointer measured_;  ///< whose names' width is known
+    int widest_ = 0;           ///< px
     Look look_;
     bool quiet_ = false;
 };

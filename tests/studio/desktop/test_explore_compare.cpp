@@ -12,7 +12,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
-#include <QTableWidget>
+#include <QTableView>
 #include <QTest>
 #include <QXmlStreamReader>
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ TEST_F(Window, ShapesThatVaryAreMadeBrushedAndTakenIntoDesign) {
     EXPECT_EQ(explore.kept().size(), 5U);
     act("rows shapes");
     EXPECT_EQ(explore.kept().size(), 1U);
-    for (auto* table : explore.findChildren<QTableWidget*>()) {
+    for (auto* table : explore.findChildren<QTableView*>()) {
         table->selectRow(0);
     }
     for (auto* button : explore.findChildren<QPushButton*>()) {

@@ -7,7 +7,7 @@
 #include <QLabel>
 #include <QScrollArea>
 #include <QScrollBar>
-#include <QTableWidget>
+#include <QTableView>
 #include <QTest>
 #include <QWheelEvent>
 
@@ -269,9 +269,9 @@ TEST_F(Journey, KeptCasesStandInTheirNaturalOrder) {
     act("workspace explore");
     settle(*window_);
     QStringList names;
-    for (auto* table : panel<ExplorePanel>().findChildren<QTableWidget*>()) {
-        for (int row = 0; table->accessibleName() == "What is kept" && row < table->rowCount(); ++row) {
-            names << table->item(row, 0)->text();
+    for (auto* table : panel<ExplorePanel>().findChildren<QTableView*>()) {
+        for (int row = 0; table->accessibleName() == "What is kept" && row < table->model()->rowCount(); ++row) {
+            names << table->model()->index(row, 0).data().toString();
         }
     }
     EXPECT_EQ(names.join(' '), "ellipse-h2-p0 ellipse-h3-p0 ellipse-h5-p0 ellipse-h10-p0 ellipse-h20-p0");

@@ -1,11 +1,14 @@
 // A study of very many cases in the window, and the first page of an empty one.
 #include <QLineEdit>
+#include <QMouseEvent>
 #include <QTest>
 #include <QToolButton>
+#include <cmath>
 #include <fstream>
 
 #include "core/text.h"
 #include "studio/desktop/first_page.h"
+#include "studio/desktop/parallel_view.h"
 #include "tests/studio/desktop/heartbeat.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -72,6 +75,57 @@ TEST_F(Window, TenThousandCasesDoNotStopTheWindow) {
     EXPECT_EQ(all.left, 1100) << "5 to 5.99 and 50 to 59.99, in steps of 0.01";
     EXPECT_LT(all.letter, 0.15);
     EXPECT_LT(all.sort, 0.3);
+}
+
+// Ctrl+A in the tree chooses all of them, and Compare shows the first six.
+TEST_F(Window, AllOfTenThousandCasesAreChosenAtOnce) {
+    open(study_of(10000, folder_.path() / "many"));
+    auto* tree = window_->findChild<StudyTree*>();
+    for (const char* workspace : {"tables", "compare"}) {
+        act(std::string("workspace ") + workspace);
+        act("select");
+        settle(*window_);
+        tree->setFocus();
+        const double before = thread_time();
+        QTest::keyClick(tree, Qt::Key_A, Qt::ControlModifier);
+        QApplication::processEvents();
+        const double took = thread_time() - before;
+        std::printf("all chosen in %s: %.0f ms of processor time\n", workspace, 1000 * took);
+        EXPECT_EQ(window_->desk().state().selection.size(), 10000U);
+        EXPECT_LT(took, 0.3) << "1.6 s in Compare, 0.6 s elsewhere before";
+        settle(*window_);
+    }
+}
+
+// Lines of all cases are drawn once: a range that is dragged moves over them, and the table writes what is seen of it.
+TEST_F(Window, ARangeIsDraggedOverTenThousandLines) {
+    ParallelView view(nullptr);
+    view.resize(1200, 260);
+    std::vector<ParallelView::Axis> axes;
+    std::vector<std::size_t> all(10000);
+    for (std::size_t k = 0; k < 9; ++k) {
+        ParallelView::Axis axis{"c" + std::to_string(k), "c", 1, {}, 0, 1};
+        for (std::size_t row = 0; row < all.size(); ++row) {
+            all[row] = row;
+            axis.values.push_back(std::sin(1.0 + static_cast<double>(row * (k + 1))));
+        }
+        axes.push_back(axis);
+    }
+    view.show_axes(axes);
+    view.show_brush({}, all);
+    view.show();
+    settle(*window_);
+    const int x = static_cast<int>(view.x_of(4));
+    QTest::mousePress(&view, Qt::LeftButton, {}, {x, 150});
+    const double before = thread_time();
+    for (int i = 1; i <= 20; ++i) {
+        QMouseEvent move(QEvent::MouseMove, QPointF(x, 150 + i), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(&view, &move);
+        view.repaint();
+    }
+    const double each = (thread_time() - before) / 20;
+    std::printf("a move over 10,000 lines of 9 columns: %.1f ms of processor time\n", 1000 * each);
+    EXPECT_LT(each, 0.016) << "goal; the lines were drawn anew at each move";
 }
 
 // A small window is as small as it is asked to be: workspaces are scrolled, and the tree keeps room for names.
