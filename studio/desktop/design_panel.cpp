@@ -54,18 +54,10 @@ void DesignPanel::build() {
     auto* views = new QSplitter(Qt::Vertical);
     all->addWidget(views, 1);
     upper_ = new QSplitter(Qt::Horizontal);
-    QWidget* body = nullptr;
-    if (Scene::possible()) {
-        scene_ = std::make_unique<Scene>(this);
-        scene_->widget()->setMinimumSize(200, 160);
-        scene_->widget()->installEventFilter(this);
-        scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
-        body = scene_->widget();
-    } else {
-        auto* why = new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer.");
-        why->setWordWrap(true);
-        body = why;
-    }
+    auto* body = new QWidget;
+    body_place_ = new QVBoxLayout(body);
+    body_place_->setContentsMargins(0, 0, 0, 0);
+    body->setMinimumSize(200, 160);
     section_ = new PlotView(this);
     body_cell_ = new ViewCell(*this, "body", "Body", body);
     section_cell_ = new ViewCell(*this, "section", "Section", section_);
@@ -96,6 +88,20 @@ void DesignPanel::build() {
     connect(section_, &PlotView::hovered, this, &Panel::remark);
     connect(lift_plot_, &PlotView::hovered, this, &Panel::remark);
     connect(map_plot_, &PlotView::hovered, this, &Panel::remark);
+}
+
+/// With the first body: an empty window needs no OpenGL, whose software renderer takes 70 MB.
+void DesignPanel::make_scene() {
+    if (!Scene::possible()) {
+        auto* why = new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer.");
+        why->setWordWrap(true);
+        body_place_->addWidget(why);
+        return;
+    }
+    scene_ = std::make_unique<Scene>(body_place_->parentWidget());
+    scene_->widget()->installEventFilter(this);
+    scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
+    body_place_->addWidget(scene_->widget());
 }
 
 void DesignPanel::build_side(QVBoxLayout& side) {
@@ -435,6 +441,9 @@ void DesignPanel::take(const std::shared_ptr<const LiveBody>& body, const std::s
 void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
     const bool first = shown_ == nullptr;
     shown_ = body;
+    if (body_place_->isEmpty()) {
+        make_scene();
+    }
     if (scene_) {
         scene_->set_ground(palette().base().color().lightness() < 128);
         scene_->show(body->drawn, first);
@@ -479,7 +488,7 @@ bool DesignPanel::eventFilter(QObject* watched, QEvent* event) {
         turned_ = turned_ || (scene_ && watched == scene_->widget());
     } else if (event->type() == QEvent::Resize && !turned_ && shown_) {
         QTimer::singleShot(0, this, [this] {
-            if (!turned_) {
+            if (!turned_ && scene_) {
                 fit_view();
                 scene_->render();
             }

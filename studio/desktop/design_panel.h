@@ -48,6 +48,8 @@ public:
     void export_picture(const std::filesystem::path& path) override;
     /// What is shown: the body of the state once `settled`.
     [[nodiscard]] std::shared_ptr<const LiveBody> shown() const { return shown_; }
+    /// True once the body stands in its view.
+    [[nodiscard]] bool has_drawn() const { return scene_ && scene_->has_drawn(); }
     [[nodiscard]] QTableWidget* card() const { return card_; }
     /// What the lift that is drawn rests on.
     [[nodiscard]] const cases::KnownLift& lift() const { return lift_; }
@@ -66,6 +68,7 @@ protected:
 private:
     void build();
     void build_side(QVBoxLayout& side);
+    void make_scene();
     void fill_rows(const std::string& name, const geometry::BodyShape& shape);
     void make_rows();
     void ask_ranges();
@@ -125,7 +128,8 @@ private:
     SessionPointer mapped_;  ///< likewise
     QTimer* map_rest_ = nullptr;
 
-    std::unique_ptr<Scene> scene_;
+    std::unique_ptr<Scene> scene_;  ///< none before the first body
+    QVBoxLayout* body_place_ = nullptr;
     bool fitted_view_ = false;  ///< to a whole body
     bool turned_ = false;       ///< by hand: the camera is not fitted any more
     QComboBox* choice_ = nullptr;

@@ -94,7 +94,7 @@ void FieldsPanel::build() {
 void FieldsPanel::lay_out(const std::vector<Source>& sources) {
     while (cells_.size() < sources.size()) {
         auto cell = std::make_unique<Cell>();
-        cell->box = new QWidget;
+        cell->box = new QWidget(grid_->parentWidget());  // without one it would be a window for a moment
         auto* column = new QVBoxLayout(cell->box);
         column->setContentsMargins(0, 0, 0, 0);
         cell->title = new QLabel;

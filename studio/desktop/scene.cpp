@@ -153,7 +153,7 @@ void Scene::Parts::dress_dot() {
 
 Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     Parts& p = *parts_;
-    p.widget = new QVTKOpenGLNativeWidget(parent);
+    p.widget = new SceneWidget(parent);
     p.widget->setRenderWindow(p.window);
     p.window->AddRenderer(p.renderer);
     p.window->SetMultiSamples(samples);
@@ -181,6 +181,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.before_drawing->SetClientData(&p);
     p.before_drawing->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
         auto& parts = *static_cast<Parts*>(data);
+        parts.soon.stop();  // drawn now, whoever asked
         parts.size_marker();
         parts.choose_drawn();
     });
@@ -190,6 +191,8 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.rest.setSingleShot(true);
     p.rest.setInterval(200);
     QObject::connect(&p.rest, &QTimer::timeout, [&p] { p.ask_for_whole(); });
+    p.soon.setSingleShot(true);
+    QObject::connect(&p.soon, &QTimer::timeout, [&p] { p.window->Render(); });
     p.dress_dot();
     // A software renderer draws four samples a pixel in four times the time: while the view is turned one is enough.
     p.on_hold->SetClientData(&p);
@@ -221,6 +224,7 @@ void Scene::Parts::size_marker() {
 Scene::~Scene() {
     parts_->hover.stop();
     parts_->rest.stop();
+    parts_->soon.stop();
     parts_->renderer->RemoveObserver(parts_->before_drawing);
     parts_->widget->removeEventFilter(parts_.get());
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
@@ -478,13 +482,18 @@ void Scene::look_from(const std::string& view, const std::string& forward, const
 }
 
 void Scene::render() {
-    if (possible()) {
-        parts_->window->Render();
+    if (possible() && parts_->widget->draws_everything()) {
+        parts_->soon.start(0);
     }
 }
 
+bool Scene::has_drawn() const { return parts_->widget->has_drawn(); }
+
 std::string Scene::png() {
-    render();
+    parts_->widget->draw_at_once();
+    if (possible()) {
+        parts_->window->Render();
+    }
     const QImage image = parts_->widget->grabFramebuffer();
     QByteArray bytes;
     QBuffer buffer(&bytes);

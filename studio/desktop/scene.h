@@ -99,8 +99,11 @@ public:
     /// Of many faces a stand-in is turned; true while it is what is seen, until the picture of all of them is drawn.
     [[nodiscard]] bool stands_in() const;
 
+    /// True from the first picture of everything on.
+    [[nodiscard]] bool has_drawn() const;
     /// PNG bytes of what is seen.
     std::string png();
+    /// In the next turn of the event loop, once for all who ask before it.
     void render();
 
 private:

@@ -40,8 +40,32 @@ struct Scene::Prepared {
     std::vector<Surface> surfaces;
 };
 
+/// A new OpenGL context draws in steps, each in a turn of the event loop of its own: one colour, the ground,
+/// everything. A software renderer compiles as it draws first (0.2 s), and what the user does is heard in between.
+class SceneWidget : public QVTKOpenGLNativeWidget {
+public:
+    using QVTKOpenGLNativeWidget::QVTKOpenGLNativeWidget;
+    /// For a picture that is wanted now.
+    void draw_at_once() { step_ = Step::everything; }
+    /// False while the first steps are under way, which end in drawing everything.
+    [[nodiscard]] bool draws_everything() const { return step_ == Step::everything; }
+    [[nodiscard]] bool has_drawn() const { return drawn_; }
+
+protected:
+    void initializeGL() override;
+    void paintGL() override;
+
+private:
+    enum class Step { colour, ground, everything };
+    void paint_colour();
+    void paint_ground();
+    void go_on(Step next);
+    Step step_ = Step::colour;
+    bool drawn_ = false;
+};
+
 struct Scene::Parts : QObject {
-    QVTKOpenGLNativeWidget* widget = nullptr;
+    SceneWidget* widget = nullptr;
     vtkNew<vtkGenericOpenGLRenderWindow> window;
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkScalarBarActor> bar;
@@ -74,7 +98,7 @@ struct Scene::Parts : QObject {
     std::unique_ptr<WholePicture> whole;  ///< none where all faces are turned
     vtkNew<vtkTexture> whole_drawn;
     vtkNew<vtkCallbackCommand> before_drawing;
-    QTimer rest;
+    QTimer rest, soon;
     std::string whole_of, asked_of;  ///< what the picture of all faces shows; what was asked for last
 
     /// Shows the picture of all faces where it is that of what is seen; else the stand-in, and asks for it at rest.

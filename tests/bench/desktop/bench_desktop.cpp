@@ -11,6 +11,8 @@
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QLineEdit>
+#include <QMouseEvent>
+#include <QScrollBar>
 #include <QSurfaceFormat>
 #include <QTest>
 #include <QTimer>
@@ -23,6 +25,7 @@
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/main_window.h"
+#include "studio/desktop/parallel_view.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/state/words.h"
 #include "studio/desktop/study_tree.h"
@@ -73,6 +76,18 @@ void say(const std::string& what, double seconds, const std::string& goal) {
     std::fflush(stdout);
 }
 
+/// Of the thread that asks, s.
+double thread_time() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct Gap {
+    double clock = 0;      ///< s
+    double processor = 0;  ///< s of the window's thread in the gap that had most of it: beside other work, too
+};
+
 /// Longest time by the clock that a timer of 2 ms was not served, the period taken off: everything that keeps the
 /// window's thread from its loop, whichever loop it is.
 class ClockBeat : public QObject {
@@ -80,26 +95,38 @@ public:
     ClockBeat() {
         timer_.setTimerType(Qt::PreciseTimer);
         connect(&timer_, &QTimer::timeout, this, [this] {
-            longest_ = std::max(longest_, 1e-9 * static_cast<double>(time_.nsecsElapsed()) - 0.002);
-            time_.restart();
+            longest_.clock = std::max(longest_.clock, 1e-9 * static_cast<double>(time_.nsecsElapsed()) - 0.002);
+            longest_.processor = std::max(longest_.processor, thread_time() - used_);
+            restart();
         });
         timer_.start(2);
-        time_.start();
+        restart();
     }
-    double take() {
+    Gap take() {
         QApplication::processEvents();
-        const double longest = longest_;
+        const Gap longest = longest_;
         QApplication::processEvents();
-        longest_ = 0;
-        time_.restart();
+        longest_ = {};
+        restart();
         return longest;
     }
 
 private:
+    void restart() {
+        time_.restart();
+        used_ = thread_time();
+    }
     QTimer timer_;
     QElapsedTimer time_;
-    double longest_ = 0;
+    double used_ = 0;
+    Gap longest_;
 };
+
+void say(const std::string& what, const Gap& gap, const std::string& goal) {
+    std::printf("%-40s %8.0f ms    (goal %s; %.0f ms of the thread's processor time)\n", what.c_str(), 1000 * gap.clock,
+                goal.c_str(), 1000 * gap.processor);
+    std::fflush(stdout);
+}
 
 /// Processor time of the process, s.
 double process_time() {
@@ -125,7 +152,7 @@ public:
 
     void study(const fs::path& folder) {
         window_.open_study(folder);
-        const double first = until([&] { return panel<DesignPanel>().shown() != nullptr || drawn() > 0; });
+        const double first = until([&] { return panel<DesignPanel>().has_drawn() || drawn() > 0; });
         say("opened, to the first picture", first, "600: 1.0 s from the start less 0.4 s to the window");
         say("  since the process was started", age(), "1000");
         settle(window_);
@@ -135,7 +162,7 @@ public:
     }
 
     void actions() {
-        double longest = 0;
+        Gap longest;
         std::string worst;
         for (const char* line :
              {"workspace explore", "brush gap=0:6mm", "brush", "workspace compare", "fields camera=bottom",
@@ -144,10 +171,10 @@ public:
               "workspace loop", "workspace design", "set 'protrusion.height=1.5 mm'", "operation gap=8mm", "reset"}) {
             window_.desk().act(words_of(line));
             settle(window_);
-            const double gap = beat_.take();
-            std::printf("    %-50s %6.0f ms\n", line, 1000 * gap);
-            worst = gap > longest ? line : worst;
-            longest = std::max(longest, gap);
+            const Gap gap = beat_.take();
+            std::printf("    %-50s %6.0f ms  (%.0f)\n", line, 1000 * gap.clock, 1000 * gap.processor);
+            worst = gap.clock > longest.clock ? line : worst;
+            longest = {std::max(longest.clock, gap.clock), std::max(longest.processor, gap.processor)};
         }
         say("longest gap of the loop, '" + worst + "'", longest, "50, 100 while jobs run");
         QElapsedTimer time;
@@ -245,10 +272,13 @@ public:
     }
 
     void many_cases(const fs::path& folder) {
+        auto& tree = *window_.findChild<StudyTree*>();
         beat_.take();
         window_.open_study(folder);
-        say("many cases to the first row",
-            until([&] { return window_.has_study() && window_.desk().session().folder == fs::absolute(folder); }),
+        say("many cases to the first row", until([&] {
+                return window_.has_study() && window_.desk().session().folder == fs::absolute(folder) &&
+                       tree.model()->rowCount() > 0 && tree.indexAt({4, 4}).isValid();
+            }),
             "500");
         settle(window_);
         say("  longest gap of the loop", beat_.take(), "100");
@@ -265,10 +295,73 @@ public:
         }
         QElapsedTimer time;
         time.start();
-        window_.findChild<StudyTree*>()->sortByColumn(StudyModel::lift, Qt::DescendingOrder);
+        tree.sortByColumn(StudyModel::lift, Qt::DescendingOrder);
         QApplication::processEvents();
         say("  sorted by lift", 1e-9 * static_cast<double>(time.nsecsElapsed()), "30");
+        beat_.take();
+        scroll(tree);
+        chosen(tree);
+        explored();
         say_memory("with them", 250);
+    }
+
+    /// Through all rows by the wheel's pages.
+    void scroll(StudyTree& tree) {
+        auto* bar = tree.verticalScrollBar();
+        for (int i = 0; i <= 40; ++i) {
+            bar->setValue(bar->maximum() * i / 40);
+            QApplication::processEvents();
+        }
+        say("  scrolled through, longest gap", beat_.take(), "100");
+    }
+
+    /// One row by the mouse, then all by Ctrl+A.
+    void chosen(StudyTree& tree) {
+        window_.desk().act({"workspace", "compare"});
+        settle(window_);
+        beat_.take();
+        tree.verticalScrollBar()->setValue(300);
+        QTest::mouseClick(tree.viewport(), Qt::LeftButton, {}, {60, 100});
+        settle(window_);
+        say("  a case chosen, longest gap", beat_.take(), "100");
+        for (const char* workspace : {"compare", "tables"}) {
+            window_.desk().act({"workspace", workspace});
+            settle(window_);
+            beat_.take();
+            tree.setFocus();
+            QTest::keyClick(&tree, Qt::Key_A, Qt::ControlModifier);
+            settle(window_);
+            say("  all chosen in " + std::string(workspace) + ", longest gap", beat_.take(), "100");
+            window_.desk().undo();
+            settle(window_);
+            beat_.take();
+        }
+    }
+
+    /// The lines of all cases: the first sight, a range dragged by the mouse and let go, one typed.
+    void explored() {
+        window_.desk().act({"workspace", "explore"});
+        settle(window_);
+        say("  Explore's first sight, longest gap", beat_.take(), "100");
+        auto& lines = *window_.findChild<ParallelView*>();
+        const int x = static_cast<int>(lines.x_of(0));
+        QTest::mousePress(&lines, Qt::LeftButton, {}, {x, lines.height() / 2});
+        for (int i = 0; i < 20; ++i) {
+            const QPointF at(x, lines.height() / 2 + 2 * i);
+            QMouseEvent move(QEvent::MouseMove, at, Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+            QApplication::sendEvent(&lines, &move);
+            QApplication::processEvents();
+        }
+        say("  a range dragged, longest gap", beat_.take(), "50");
+        QTest::mouseRelease(&lines, Qt::LeftButton, {}, {x, lines.height() / 2 + 40});
+        settle(window_);
+        say("  and let go, longest gap", beat_.take(), "100");
+        if (window_.desk().state().explore.brush.empty()) {
+            throw std::runtime_error("no range was kept");
+        }
+        window_.desk().act({"brush"});
+        settle(window_);
+        say("  and taken away, longest gap", beat_.take(), "100");
     }
 
     void empty() { say_memory("empty", 110); }
