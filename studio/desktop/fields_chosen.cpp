@@ -356,8 +356,11 @@ void FieldsPanel::offer_half() {
     for (const auto& cell : cells_) {
         if (cell->ready && cell->half && cell->source.symmetry.empty() && cell->source.id.starts_with("field/")) {
             plane = qt(cell->half->symmetry);
-            half_offer_->setToolTip("The flat symmetry boundary '" + qt(cell->half->zone) +
-                                    "' has the body on one side: loads and pictures then count both halves");
+            half_offer_->setToolTip(
+                (cell->half->zone.empty()
+                     ? "The surface of " + qt(cell->source.file.filename().string()) + " is open there"
+                     : "The flat symmetry boundary '" + qt(cell->half->zone) + "' has the body on one side") +
+                ": loads and pictures then count both halves");
         }
     }
     half_offer_->setVisible(!plane.isEmpty());

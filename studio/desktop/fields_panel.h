@@ -109,6 +109,7 @@ private:
     [[nodiscard]] Source source_of(const std::filesystem::path& file) const;
     void lay_out(const std::vector<Source>& sources);
     void read(std::size_t cell);
+    void warn_of_loads(std::size_t cell);
     void taken(std::size_t cell, const std::shared_ptr<const postproc::Field>& field,
                const std::shared_ptr<const Scene::Prepared>& prepared);
     [[nodiscard]] postproc::LoadsOptions loads_options(const Source& source) const;

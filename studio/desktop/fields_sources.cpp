@@ -1,4 +1,6 @@
 // Compare: which files are shown, how they are read, and what is done with one that cannot be.
+#include <QRegularExpression>
+
 #include "cases/case_loads.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -139,6 +141,23 @@ postproc::LoadsOptions FieldsPanel::loads_options(const Source& source) const {
 
 namespace {
 
+/// What the loads say in the words of their options.
+const QRegularExpression& half_model_option() {
+    static const QRegularExpression option("a half model\\? then option 'symmetry ([xyz])'");
+    return option;
+}
+
+/// By its symmetry boundary, else by the opening of its surface, of which the loads warn.
+std::optional<postproc::LikelyHalf> half_of(const postproc::Field& field, const FieldLoads& sum) {
+    auto half = postproc::likely_half(field);
+    for (const auto& found : sum.loads != nullptr ? sum.loads->problems : core::Problems{}) {
+        if (const auto match = half_model_option().match(qt(found.message)); !half && match.hasMatch()) {
+            half = postproc::LikelyHalf{match.captured(1).toStdString(), ""};
+        }
+    }
+    return half;
+}
+
 /// What a person is told of a file that cannot be read.
 QString sentence_of(const core::Error& error) {
     return qt(error.place().text() + (error.place().text().empty() ? "" : ": ") + error.message() +
@@ -163,13 +182,14 @@ void FieldsPanel::read(std::size_t index) {
                     std::make_shared<const postproc::Field>(postproc::read_field(source.file, reading, progress));
                 const auto prepared = Scene::prepare(field, source.symmetry, progress);
                 const auto sum = sum_of(*field, options, progress);
-                const auto half = postproc::likely_half(*field);
+                const auto half = half_of(*field, sum);
                 return [this, current, index, field, prepared, sum, half] {
                     if (current()) {
                         cells_[index]->half = half;
                         cells_[index]->loads = sum.loads;
                         cells_[index]->no_loads = sum.why;
                         taken(index, field, prepared);
+                        warn_of_loads(index);
                     }
                 };
             } catch (const core::Cancelled&) {
@@ -193,6 +213,24 @@ void FieldsPanel::read(std::size_t index) {
                 };
             }
         });
+}
+
+/// Of a file from outside; what is said of the loads of a case is said where the study is read.
+void FieldsPanel::warn_of_loads(std::size_t index) {
+    const Cell& cell = *cells_[index];
+    if (cell.loads == nullptr || !cell.source.id.starts_with("field/")) {
+        return;
+    }
+    for (core::Problem found : cell.loads->problems) {
+        if (found.severity != core::Problem::Severity::warning) {
+            continue;
+        }
+        found.message = qt(found.message)
+                            .replace(half_model_option(), "half of a model? then 'Half model across \\1: take it so'")
+                            .toStdString();
+        found.place.file = found.place.file.empty() ? cell.source.file.string() : found.place.file;
+        Q_EMIT problem(found);
+    }
 }
 
 void FieldsPanel::not_read(std::size_t index, const QString& why) {

@@ -8,6 +8,7 @@
 
 #include "core/text.h"
 #include "geometry/body/body_figures.h"
+#include "geometry/body/body_report.h"
 #include "geometry/body/body_surface.h"
 #include "geometry/body/exact_body.h"
 #include "geometry/body/variants.h"
@@ -76,7 +77,7 @@ void add_added_mass(LiveBody& body, core::Progress& progress) {
     geometry::AddedMassOptions options;
     options.placement = body.placement;
     try {
-        body.added_mass = geometry::added_mass(body.shape, 600, options, true, progress);
+        body.added_mass = geometry::added_mass(body.shape, geometry::BodyOptions().panels, options, true, progress);
     } catch (const core::InputError& error) {
         body.contact = error.message();
     }

@@ -1,7 +1,9 @@
 // What is dropped on the window, or named on its command line: content decides what becomes of it.
+#include <algorithm>
 #include <filesystem>
 
 #include "cases/add_measurement.h"
+#include "cases/study.h"
 #include "core/error.h"
 #include "geometry/body/body_shape.h"
 #include "postproc/importers/importer.h"
@@ -17,8 +19,8 @@ namespace underbody::studio {
 namespace fs = std::filesystem;
 
 void MainWindow::take_files(const std::vector<fs::path>& files) {
-    Words fields = {"select"};
-    std::vector<fs::path> folders, measured;
+    constexpr std::size_t most_compared = 6;
+    std::vector<fs::path> folders, measured, fields;
     for (const fs::path& path : files) {
         guarded("opening " + qt(path.string()), [&] {
             const bool folder = fs::is_directory(path);
@@ -35,23 +37,39 @@ void MainWindow::take_files(const std::vector<fs::path>& files) {
                 desk_->act({"add", "shape", path.string()});
                 desk_->act({"shape", path.stem().string()});
                 desk_->act({"workspace", "design"});
-            } else if (desk_->act({"add", "field", path.string()})) {
-                fields.push_back("field/" + action::whole_path(path));
-                if (files.size() == 1) {
-                    remember_study(qt(action::whole_path(path)));
-                }
+            } else {
+                fields.push_back(path);
             }
         });
     }
-    if (fields.size() > 1) {
-        desk_->act(fields);
-        desk_->act({"workspace", "compare"});
+    if (fields.size() > most_compared) {  // more than can stand beside each other: cases of a study
+        folders.insert(folders.end(), fields.begin(), fields.end());
+    } else {
+        compare_files(fields, files.size() == 1);
     }
     if (!folders.empty()) {
         take_in(folders);
     }
     if (!measured.empty()) {
         guarded("taking measurements in", [&] { take_measurements(measured); });
+    }
+}
+
+void MainWindow::compare_files(const std::vector<fs::path>& files, bool remembered) {
+    Words words = {"select"};
+    for (const fs::path& path : files) {
+        guarded("opening " + qt(path.string()), [&] {
+            if (desk_->act({"add", "field", path.string()})) {
+                words.push_back("field/" + action::whole_path(path));
+                if (remembered) {
+                    remember_study(qt(action::whole_path(path)));
+                }
+            }
+        });
+    }
+    if (words.size() > 1) {
+        desk_->act(words);
+        desk_->act({"workspace", "compare"});
     }
 }
 
@@ -78,10 +96,28 @@ TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {
     connect(sheet, &TakeInSheet::failed, this, &MainWindow::show_failure);
     connect(sheet, &TakeInSheet::taken, this, [this](const QString& study, const QString& command, int cases) {
         problems_->note(QString("Took in %1 cases. The same: ").arg(cases) + command);
+        forget_files_of(study.toStdString());
         desk_->open_and_run(study.toStdString(), {{"workspace", "compare"}});
     });
     sheet->show();
     return sheet;
+}
+
+/// Files that are cases now no longer stand beside the study as files from outside.
+void MainWindow::forget_files_of(const fs::path& study) {
+    const auto opened = cases::Study::open(study);
+    Words words = {"remove"};
+    for (const auto& entry : desk_->state().files) {
+        const std::string path = entry.substr(entry.find(':') + 1);
+        if (entry.starts_with("field:") && std::any_of(opened.cases.begin(), opened.cases.end(), [&](const auto& one) {
+                return fs::absolute(one.file).lexically_normal() == fs::path(path);
+            })) {
+            words.push_back(path);
+        }
+    }
+    if (words.size() > 1) {
+        desk_->act(words);
+    }
 }
 
 void MainWindow::take_in_what_is_shown() {

@@ -96,6 +96,8 @@ private:
     void follow_session();
     void watch_files();
     void take_in_what_is_shown();
+    void compare_files(const std::vector<std::filesystem::path>& files, bool remembered);
+    void forget_files_of(const std::filesystem::path& study);
     void open_report();
     void export_picture();
     void export_table();

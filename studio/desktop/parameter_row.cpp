@@ -93,6 +93,22 @@ void NumberEdit::keyPressEvent(QKeyEvent* event) {
     QLineEdit::keyPressEvent(event);
 }
 
+namespace {
+
+/// What moves while the button is down is one gesture, from where it went down.
+class GestureSlider : public QSlider {
+public:
+    using QSlider::QSlider;
+
+protected:
+    void mousePressEvent(QMouseEvent* event) override {
+        setSliderDown(event->button() == Qt::LeftButton && minimum() < maximum());
+        QSlider::mousePressEvent(event);
+    }
+};
+
+}  // namespace
+
 ParameterRow::ParameterRow(const QString& name, const QString& meaning, const std::string& unit,
                            const std::string& shown, QWidget* parent)
     : QWidget(parent) {
@@ -102,7 +118,7 @@ ParameterRow::ParameterRow(const QString& name, const QString& meaning, const st
     name_ = new QLabel(name.section('.', -1).replace('_', ' '));
     name_->setMinimumWidth(86);
     name_->setToolTip(meaning.isEmpty() ? name : name + ": " + meaning);
-    slider_ = new QSlider(Qt::Horizontal);
+    slider_ = new GestureSlider(Qt::Horizontal);
     slider_->setRange(0, steps);
     slider_->setMinimumWidth(90);
     slider_->setAccessibleName(name);

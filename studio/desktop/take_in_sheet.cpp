@@ -156,6 +156,8 @@ TakeInSheet::Found TakeInSheet::look(const fs::path& study, const std::vector<fs
     for (const auto& path : dropped) {
         gather(fs::absolute(path).lexically_normal(), files, progress);
     }
+    std::sort(files.begin(), files.end(),
+              [](const fs::path& a, const fs::path& b) { return natural_less(qt(a.string()), qt(b.string())); });
     Found found;
     for (const auto& file : files) {
         found.names.push_back(file.lexically_relative(study).generic_string());

@@ -17,8 +17,14 @@ const QColor text_colour(40, 40, 40);
 
 /// Text as people write it: names of quantities without their underscores ("lift_force"; "C_L" stays).
 QString words(const std::string& text) {
-    static const QRegularExpression underscore("(?<=[a-z][a-z])_(?=[a-z][a-z])");
-    return QString::fromStdString(text).replace(underscore, " ").replace("+-", "±");
+    // A name of a case or file ("ellipse_front-h3-p0") is none: it stands as it is written elsewhere.
+    static const QRegularExpression key("(?<![\\w.-])[a-z]{2,}(_[a-z]{2,})+(?![\\w-])");
+    QString said = QString::fromStdString(text);
+    for (auto found = key.globalMatch(said); found.hasNext();) {
+        const auto match = found.next();
+        said.replace(match.capturedStart(), match.capturedLength(), match.captured().replace('_', ' '));
+    }
+    return said.replace("+-", "±");
 }
 
 /// Numbers with a real minus sign and no leftover of rounding at zero.
@@ -32,6 +38,24 @@ protected:
         }
         return label;
     }
+};
+
+/// 1, 2, 5, 10, ... of a logarithmic axis under one and a half decades, which powers of ten alone leave with a single
+/// number; more of them where it is less than one.
+class DecadeTicker : public FineTicker<QCPAxisTicker> {
+protected:
+    QVector<double> createTickVector(double, const QCPRange& range) override {
+        const QVector<double> parts =
+            range.upper > 10 * range.lower ? QVector<double>{1, 2, 5} : QVector<double>{1, 1.5, 2, 3, 4, 5, 7};
+        QVector<double> ticks;
+        for (double decade = std::pow(10, std::floor(std::log10(range.lower))); decade <= range.upper; decade *= 10) {
+            for (const double part : parts) {
+                ticks << part * decade;
+            }
+        }
+        return ticks;
+    }
+    int getSubTickCount(double) override { return 0; }
 };
 
 QPen curve_pen(const core::FigureCurve& curve) {
@@ -161,7 +185,7 @@ private:
             if (range.upper / range.lower > 30) {
                 axis.setTicker(QSharedPointer<QCPAxisTicker>(new FineTicker<QCPAxisTickerLog>));
             } else {
-                axis.setTicker(QSharedPointer<QCPAxisTicker>(new FineTicker<QCPAxisTicker>));
+                axis.setTicker(QSharedPointer<QCPAxisTicker>(new DecadeTicker));
             }
             axis.setNumberPrecision(4);
         } else {

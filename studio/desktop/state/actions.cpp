@@ -64,11 +64,13 @@ State add_file(State state, const Words& words, const Session&) {
 }
 
 State remove_file(State state, const Words& words, const Session& session) {
-    need(words, 1, 1, "remove FILE");
-    const std::string path = whole_path(words[0]);
-    need_one_of(path, names_of(state, session, "field"), "file from outside the study");
-    std::erase_if(state.files, [&](const std::string& entry) { return entry.ends_with(":" + path); });
-    state.readings.erase(path);
+    need(words, 1, words.size(), "remove FILE ...");
+    for (const auto& word : words) {
+        const std::string path = whole_path(word);
+        need_one_of(path, names_of(state, session, "field"), "file from outside the study");
+        std::erase_if(state.files, [&](const std::string& entry) { return entry.ends_with(":" + path); });
+        state.readings.erase(path);
+    }
     return state;
 }
 
@@ -309,7 +311,7 @@ const std::vector<ActionKind>& action_kinds() {
     static const std::vector<ActionKind> kinds = {
         {"open", "FOLDER", "opens a study", "open cases/evie", false, open_study},
         {"add", "field|shape FILE", "shows a file from outside the study", "add shape hull.toml", false, add_file},
-        {"remove", "FILE", "no longer shows such a file", "remove hull.toml", false, remove_file},
+        {"remove", "FILE ...", "no longer shows such files", "remove hull.toml", false, remove_file},
         {"locate", "OLD NEW", "says where a study or file has moved to", "locate /old/evie /new/evie", false, locate},
         {"workspace", "NAME", "shows a workspace", "workspace tables", true, show_workspace},
         {"select", "KIND/NAME ...", "selects cases, shapes, tables, ...", "select case/ellipse-h5-p0", true, select},

@@ -76,6 +76,28 @@ TEST_F(Window, ShapesThatVaryAreMadeBrushedAndTakenIntoDesign) {
     EXPECT_TRUE(window_->desk().state().design.changes.empty());
 }
 
+// Points of 1 to 20 mm stood over "2.5 5 7.5 10 12.5 1517.520".
+TEST_F(Window, AShortLogarithmicAxisHasRoundNumbers) {
+    PlotView view(nullptr);
+    view.resize(500, 400);
+    core::Figure figure;
+    figure.x = {"gap", "mm", 0, 0, true};
+    figure.y = {"lift_force", "N", 0, 0, false};
+    core::FigureCurve curve;
+    curve.name = "ellipse_front-h3-p0";
+    curve.x = {1, 2, 3, 5, 10, 20};
+    curve.y = {6, 4, 3, 3, 3, 3.5};
+    figure.curves.push_back(curve);
+    view.show_figure(figure);
+    view.show();
+    settle(*window_);
+    auto* plot = view.findChild<QCustomPlot*>();
+    ASSERT_NE(plot, nullptr);
+    plot->replot();
+    EXPECT_EQ(QStringList(plot->xAxis->tickVectorLabels().toList()).join(' '), "1 2 5 10 20");
+    EXPECT_EQ(plot->yAxis->label(), "lift force (N)");
+}
+
 TEST_F(Window, ARangeIsTypedAsWellAsDragged) {
     open(computed_study());
     act("workspace explore");

@@ -13,6 +13,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPainter>
+#include <QPushButton>
 #include <QStyleOption>
 #include <QTableWidget>
 #include <QTest>
@@ -146,6 +147,61 @@ TEST_F(Window, ADamagedFileSaysWhyAndTheOthersGoOn) {
     EXPECT_NE(window_->last_error().indexOf("cut short"), -1) << window_->last_error().toStdString();
     EXPECT_TRUE(std::isnan(fields.numbers()->table().numbers("lift_force").at(0)));
     EXPECT_FALSE(std::isnan(fields.numbers()->table().numbers("lift_force").at(1)));
+}
+
+// A half model that is a surface alone (no symmetry boundary says so): its loads are half of what they seem, which the
+// command line told and the window did not.
+TEST_F(Window, AnOpenHalfIsSaidAndTaken) {
+    window_->take_files({shipped("ellipse-h5-p0.csv")});
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    const double half = lift_shown(fields);
+    EXPECT_TRUE(window_->findChild<ProblemList*>()->text().contains("half of a model? then 'Half model across y"))
+        << window_->findChild<ProblemList*>()->text().toStdString();
+    QPushButton* offer = nullptr;
+    for (auto* button : fields.findChildren<QPushButton*>()) {
+        offer = button->text().startsWith("Half model across y") ? button : offer;
+    }
+    ASSERT_TRUE(offer != nullptr && offer->isVisible());
+    offer->click();
+    settle(*window_);
+    EXPECT_NEAR(lift_shown(fields), 2 * half, 1e-3 * std::abs(half));
+    EXPECT_FALSE(offer->isVisible());
+}
+
+// More files than can stand beside each other: they were added in the order of their letters, six were shown, and
+// nothing was said of the others.
+TEST_F(Window, ManyFilesAreTakenInAsCases) {
+    const fs::path folder = folder_.path() / "exports";
+    fs::create_directories(folder);
+    std::vector<fs::path> files;
+    for (const char* gap : {"10", "1", "20", "2", "3", "50", "5"}) {
+        files.push_back(folder / (std::string("run7_h") + gap + "mm.csv"));
+        fs::copy_file(shipped(std::string("ellipse-h") + gap + "-p0.csv"), files.back());
+    }
+    window_->take_files(files);
+    settle(*window_);
+    auto* sheet = window_->findChild<TakeInSheet*>();
+    ASSERT_NE(sheet, nullptr);
+    EXPECT_EQ(sheet->pattern()->text(), "run7_h{gap:mm}mm.csv");
+    ASSERT_EQ(sheet->files()->rowCount(), 7);
+    EXPECT_EQ(sheet->files()->item(0, 1)->text(), "1");
+    EXPECT_EQ(sheet->files()->item(6, 1)->text(), "50");
+    EXPECT_TRUE(window_->desk().state().files.empty());
+    sheet->reject();
+    // Six stand beside each other; once they are cases they are no files from outside any more.
+    files.pop_back();
+    window_->take_files(files);
+    settle(*window_);
+    EXPECT_EQ(window_->desk().state().files.size(), 6U);
+    EXPECT_EQ(window_->desk().state().workspace, "compare");
+    sheet = window_->take_in(files);
+    settle(*window_);
+    sheet->half()->setCurrentIndex(sheet->half()->findData("y"));
+    sheet->accept();
+    settle(*window_);
+    ASSERT_TRUE(window_->has_study()) << window_->last_error().toStdString();
+    EXPECT_TRUE(window_->desk().state().files.empty());
 }
 
 // J1: a folder with names that carry conditions becomes cases; what the sheet says is what `study add` does.
