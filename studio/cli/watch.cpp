@@ -37,9 +37,15 @@ struct WatchArguments {
 /// Looks for what changed, in a thread of its own where the log does not wait.
 class CauseSearch {
 public:
+    /// What a model lacks that was watched.
+    struct Question {
+        dynamics::Model model;
+        dynamics::Measurements data;
+    };
     struct Result {
         discovery::Discovery found;
-        std::string error;  ///< why nothing can be told
+        std::string error;        ///< why nothing can be told
+        bool same_story = false;  ///< one change since the earlier alarm explains all of it
     };
     ~CauseSearch() {
         progress_.cancel();
@@ -47,9 +53,9 @@ public:
             result_.wait();
         }
     }
-    void begin(dynamics::Model model, dynamics::Measurements data) {
-        result_ = std::async(std::launch::async, [this, model = std::move(model), data = std::move(data)] {
-            return search(model, data, progress_);
+    void begin(Question now, std::optional<Question> earlier) {
+        result_ = std::async(std::launch::async, [this, now = std::move(now), earlier = std::move(earlier)] {
+            return search(now, earlier, progress_);
         });
     }
     [[nodiscard]] bool running() const { return result_.valid(); }
@@ -65,20 +71,33 @@ public:
         }
         return result_.get();
     }
-    static Result search(const dynamics::Model& model, const dynamics::Measurements& data, core::Progress& progress) {
+    /// `earlier`: since the first alarm of what may be one change, and the model then. One change that leaves noise is
+    /// the simpler story than a second one, and its numbers are surer; else what changed of late is asked for.
+    static Result search(const Question& now, const std::optional<Question>& earlier, core::Progress& progress) {
+        if (earlier) {
+            Result result = search(*earlier, progress);
+            if (result.error.empty() && result.found.verdict == "effect" && result.found.rest.is_noise) {
+                result.same_story = true;
+                return result;
+            }
+        }
+        return search(now, progress);
+    }
+
+private:
+    static Result search(const Question& question, core::Progress& progress) {
         discovery::DiscoverOptions options;
         options.consequence = false;
         options.figures = false;
         try {
-            return {discovery::discover(model, data, options, progress), {}};
+            return {discovery::discover(question.model, question.data, options, progress), {}, false};
         } catch (const core::Cancelled&) {
             throw;
         } catch (const core::Error& error) {
-            return {{}, error.message()};
+            return {{}, error.message(), false};
         }
     }
 
-private:
     core::Progress progress_;
     std::future<Result> result_;
 };
@@ -104,7 +123,7 @@ public:
         after_ = option_value("--after", arguments.after, "s");
         options_.noise = setup_.noise;
         options_.conditions = setup_.conditions;
-        begin();
+        watch_ = std::make_unique<discovery::Watch>(model_, options_);
     }
 
     [[nodiscard]] const dynamics::MeasurementSetup& setup() const { return setup_; }
@@ -135,20 +154,19 @@ public:
             }
         }
         search_.reset();
-        watched_ += watch_->judged();
-        passed_over_ += watch_->passed_over();
-        readings_ += watch_->readings();
-        const bool nothing = watched_ == 0;
+        const double watched = watch_->judged();
+        const std::size_t passed_over = watch_->passed_over(), readings = watch_->readings();
+        const bool nothing = watched == 0;
         const std::string alarms = std::to_string(alarms_) + (alarms_ == 1 ? " alarm" : " alarms");
         std::string text = seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
-                           core::counted(readings_, "reading") + ", " + seconds(watched_) + " of them judged; " +
+                           core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged; " +
                            (nothing        ? "nothing was judged: the noise was still being learned"
                             : alarms_ == 0 ? "the gap followed the model all the time"
                                            : alarms);
         text += pitch_too_ ? "; the pitch was taken as measured, whether it follows the model is not watched" : "";
-        if (passed_over_ > 0) {
-            text += "; " + core::counted(passed_over_, "reading") + " whose time did not ascend " +
-                    (passed_over_ == 1 ? "was" : "were") + " passed over";
+        if (passed_over > 0) {
+            text += "; " + core::counted(passed_over, "reading") + " whose time did not ascend " +
+                    (passed_over == 1 ? "was" : "were") + " passed over";
         }
         nlohmann::json warnings = nlohmann::json::array();
         for (const core::Problem& problem : problems) {
@@ -160,9 +178,9 @@ public:
         }
         say({{"event", "end"},
              {"time", last_},
-             {"readings", readings_},
-             {"judged", watched_},
-             {"passed_over", passed_over_},
+             {"readings", readings},
+             {"judged", watched},
+             {"passed_over", passed_over},
              {"alarms", alarms_},
              {"cancelled", cancelled},
              {"warnings", warnings}},
@@ -175,16 +193,6 @@ public:
 
 private:
     static std::string seconds(double time) { return core::format_number(time, 8) + " s"; }
-
-    void begin() {
-        if (watch_) {
-            watched_ += watch_->judged();
-            passed_over_ += watch_->passed_over();
-            readings_ += watch_->readings();
-        }
-        watch_ = std::make_unique<discovery::Watch>(model_, options_);
-        told_ = false;
-    }
 
     void gap(double time, double value) {
         const auto alarm = watch_->gap(time, value);
@@ -237,19 +245,26 @@ private:
     void look_for_cause() {
         alarmed_since_ = alarm_->since;
         alarm_.reset();
+        const auto ask = [&](const dynamics::Model& of, double since) {
+            CauseSearch::Question question{of, watch_->since(since)};
+            question.model.records = {};  // what was read is as they say
+            return question;
+        };
         if (arguments_.no_cause) {
             go_on_as_before();
             return;
         }
-        dynamics::Model as_read = model_;
-        as_read.records = {};
+        std::optional<CauseSearch::Question> earlier;
+        if (story_) {
+            earlier = ask(story_->model, story_->since);
+        }
         if (live_) {
             say({{"event", "searching"}, {"time", last_}},
                 seconds(last_) + ": looking for what changed; the log is read on");
             search_ = std::make_unique<CauseSearch>();
-            search_->begin(as_read, watch_->since(alarmed_since_));
+            search_->begin(ask(model_, alarmed_since_), std::move(earlier));
         } else {
-            say_cause(CauseSearch::search(as_read, watch_->since(alarmed_since_), shell_.progress()));
+            say_cause(CauseSearch::search(ask(model_, alarmed_since_), earlier, shell_.progress()));
         }
     }
 
@@ -257,7 +272,11 @@ private:
     void say_cause(const CauseSearch::Result& result) {
         search_.reset();
         const discovery::Discovery& found = result.found;
-        nlohmann::json event = {{"event", "cause"}, {"time", last_}, {"since", alarmed_since_}};
+        if (!story_) {
+            story_ = {model_, alarmed_since_};
+        }
+        const double since = result.same_story ? story_->since : alarmed_since_;
+        nlohmann::json event = {{"event", "cause"}, {"time", last_}, {"since", since}};
         if (!result.error.empty()) {
             event["verdict"] = "unknown";
             event["sentence"] = result.error;
@@ -268,23 +287,31 @@ private:
         event["verdict"] = found.verdict;
         event["sentence"] = found.sentence;
         event["effects"] = discovery::to_json(found)["effects"];
-        std::string text = seconds(last_) + ": " + found.sentence;
+        const bool other = result.same_story || found.model.effects.size() != model_.effects.size();
+        event["goes_on_with"] = other ? "model as found" : "model as before";
+        std::string text = seconds(last_) + ": " +
+                           (result.same_story ? "one change since " + seconds(since) + " explains all: " : "") +
+                           found.sentence;
         for (const auto& effect : found.effects) {
             for (const auto& parameter : effect.parameters) {
                 text += "\n  " + effect.name + ": " + discovery::number_name(effect, parameter) + " = " +
                         discovery::value_text(parameter);
             }
         }
+        text += std::string("\n  goes on with the model as ") + (other ? "found" : "before") +
+                ", and with the noise as it was before the change";
         say(event, text);
-        if (found.verdict == "none") {
+        if (!other) {
             go_on_as_before();
             return;
+        }
+        if (!result.same_story) {
+            story_ = {model_, alarmed_since_};
         }
         const dynamics::RecordReading records = model_.records;
         model_ = found.model;
         model_.records = records;
-        options_.fitted_over = std::max(last_ - alarmed_since_, after_);
-        begin();
+        watch_->go_on_with(model_, std::max(last_ - since, after_));
     }
 
     /// With the same model: the same change is not said again at once.
@@ -313,11 +340,16 @@ private:
     dynamics::Model model_;
     dynamics::MeasurementSetup setup_;
     discovery::WatchOptions options_;
-    double after_ = 60, last_ = 0, alarmed_since_ = 0, silent_until_ = -1e300, watched_ = 0;
-    std::size_t readings_ = 0, passed_over_ = 0;
+    double after_ = 60, last_ = 0, alarmed_since_ = 0, silent_until_ = -1e300;
     bool pitch_too_ = false;  ///< the log has it
     bool live_ = false;
     std::unique_ptr<discovery::Watch> watch_;
+    /// The change that is being explained: the model before it, and since when.
+    struct Story {
+        dynamics::Model model;
+        double since = 0;
+    };
+    std::optional<Story> story_;
     std::optional<discovery::WatchAlarm> alarm_;
     std::unique_ptr<CauseSearch> search_;
     nlohmann::json events_ = nlohmann::json::array();

@@ -49,6 +49,9 @@ bool add_use(Hypothesis& hypothesis, const dynamics::Effect& effect, const std::
     for (std::size_t k = 0; k < parameters.size(); ++k) {
         const dynamics::EffectParameter& p = parameters[k];
         use.values[k] = p.neutral;
+        if (p.lower == p.upper) {
+            continue;  // held
+        }
         hypothesis.parameters.push_back({p.name, p.unit, p.lower, p.upper, p.neutral, p.typical});
         hypothesis.slots.push_back({which, k});
     }
@@ -316,6 +319,19 @@ void start_heave(Hypothesis& hypothesis, const dynamics::EffectSearch& search) {
 
 namespace {
 
+/// With this number held where it is by default: dearer numbers that weak effects do not show would hide them.
+Hypothesis without(Hypothesis hypothesis, const std::string& number) {
+    const auto held = std::find_if(hypothesis.parameters.begin(), hypothesis.parameters.end(),
+                                   [&](const FitParameter& p) { return p.name == number; }) -
+                      hypothesis.parameters.begin();
+    hypothesis.parameters.erase(hypothesis.parameters.begin() + held);
+    hypothesis.slots.erase(hypothesis.slots.begin() + held);
+    for (std::vector<double>& begin : hypothesis.starts) {
+        begin.erase(begin.begin() + held);
+    }
+    return hypothesis;
+}
+
 /// Every effect that time series can show, in the catalogue's order.
 std::vector<Hypothesis> series_hypotheses(const Look& look) {
     std::vector<Hypothesis> list;
@@ -329,6 +345,9 @@ std::vector<Hypothesis> series_hypotheses(const Look& look) {
             continue;
         }
         start_heave(hypothesis, info.search);
+        if (!info.search.also_held.empty()) {
+            list.push_back(without(hypothesis, info.search.also_held));
+        }
         if (!info.search.beside.empty()) {
             // the law is not one law; with the other's numbers free its form bends to others
             Hypothesis bent = hypothesis;

@@ -62,6 +62,40 @@ TEST(WatchCommand, SaysWhenAndWhatChanged) {
     EXPECT_EQ(events.back()["event"], "end");
 }
 
+/// On a spring a force that grows and a sensor that drifts are one: both are said. The numbers found within a minute
+/// are found anew when they miss; the watch sees no less for it (one alarm in half an hour before, then judged every
+/// 400 s).
+TEST(WatchCommand, AForceThatGrowsIsTiedWithADriftAndFoundAnewAsItGoesOn) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    WatchedRig rig(21);
+    std::string csv = "time [s], gap [m], input_force [N]\n";
+    constexpr double change = 200, second = 700;
+    while (rig.time < 780) {
+        rig.force = (rig.time > change ? 2e-5 * (rig.time - change) : 0) - (rig.time > second ? 0.01 : 0);
+        rig.advance();
+        csv += core::format_number(rig.time, 9) + ", " + core::format_number(rig.reading, 9) + ", " +
+               core::format_number(rig.input, 9) + "\n";
+    }
+    core::write_file(folder.path() / "run.csv", csv);
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv", "--json"}, folder.path());
+    EXPECT_EQ(run.exit_code, 4) << run.errors;
+    std::vector<json> causes, alarms;
+    for (const json& event : lines_of(run.output)) {
+        (event["event"] == "cause" ? causes : alarms).push_back(event);
+    }
+    std::erase_if(alarms, [](const json& event) { return event["event"] != "alarm"; });
+    ASSERT_GE(causes.size(), 2u) << run.output;
+    const std::string said = causes.front()["sentence"];
+    EXPECT_THAT(said, HasSubstr("growing_force"));
+    EXPECT_THAT(said, HasSubstr("gap_sensor_drift"));
+    EXPECT_THAT(said, HasSubstr("cannot well tell it from"));
+    EXPECT_EQ(causes.front()["goes_on_with"], "model as found");
+    EXPECT_TRUE(std::any_of(alarms.begin(), alarms.end(),
+                            [&](const json& event) { return event["time"] > second && event["time"] < second + 60; }))
+        << "what comes after is seen as well as before: " << run.output;
+}
+
 TEST(WatchCommand, IsSilentWhileNothingChanges) {
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "model.toml", rig_model);

@@ -23,6 +23,7 @@ struct WatchedRig {
     double text = 0;       ///< share of fields that hold no number, of the reading and of the input
     // What changes:
     double force = 0;         ///< N, constant
+    double bias = 0;          ///< m, of a reading
     double friction = 0;      ///< N, against the motion
     double gain = 1;          ///< of the input
     double more_damping = 0;  ///< N s/m
@@ -61,7 +62,7 @@ struct WatchedRig {
         }
         time += step;
         error = colour * error + std::sqrt(1 - colour * colour) * random.normal(0, noise);
-        reading = gap + error;
+        reading = gap + error + bias;
         if (wild > 0 && random.uniform() < wild) {
             reading += random.uniform(-0.5, 0.5);
         }

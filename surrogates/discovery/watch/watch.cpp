@@ -195,10 +195,15 @@ struct Watch::Parts {
         count_in_step = 0;
         sum_time = sum_gap = gaps = usual_step = 0;
         if (noise) {
-            residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
-            residuals->set_colours(noise->colours);
+            restart_filter();
             scores->restart();
         }
+    }
+
+    /// With the noise that was learned.
+    void restart_filter() {
+        residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
+        residuals->set_colours(noise->colours);
     }
 
     /// Readings up to `next_begin`, averaged.
@@ -289,8 +294,7 @@ struct Watch::Parts {
         noise = learn_noise(plant, recent, begin);
         raw_time = {};
         raw_gap = {};
-        residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
-        residuals->set_colours(noise->colours);
+        restart_filter();
         const double block =
             std::max({least_block, least_steps * usual_step, blocks_of_colour * noise->correlation_time});
         // what was learned from also gives the scores their scale; sums that have begun go on where the blocks are
@@ -351,7 +355,7 @@ struct Watch::Parts {
         return alarm;
     }
 
-    const dynamics::Model model;
+    dynamics::Model model;
     WatchOptions options;
     dynamics::Conditions held;
     std::shared_ptr<const dynamics::HeavePlant> plant;
@@ -429,6 +433,19 @@ void Watch::reset() {
     if (parts_->scores) {
         parts_->scores->reset();
         parts_->next_learn = std::numeric_limits<double>::infinity();
+    }
+}
+
+void Watch::go_on_with(const dynamics::Model& model, double fitted_over) {
+    Parts& p = *parts_;
+    p.model = model;
+    p.options.fitted_over = fitted_over;
+    p.plants.clear();
+    p.plant = p.plant_of_conditions();
+    if (p.scores) {
+        p.restart_filter();
+        p.scores->go_on(fitted_over);
+        p.next_learn = std::numeric_limits<double>::infinity();
     }
 }
 

@@ -70,8 +70,12 @@ public:
     /// What was read from `since` on, as runs of about ten seconds and more for discover(); as far back as is kept.
     /// Signs, factors and clocks are already as the model's [records] say: to be read with none.
     [[nodiscard]] dynamics::Measurements since(double since) const;
-    /// All tests begin anew (after an alarm that was seen to); what was learned stays, and nothing more is learned.
+    /// All tests begin anew (after an alarm that was seen to); what was learned before the change stays, and nothing
+    /// more is learned: a change that goes on is no noise.
     void reset();
+    /// The same with the model that was found. `fitted_over`: s of readings that its numbers were fitted to. Where
+    /// nothing was learned yet, it is learned with that model.
+    void go_on_with(const dynamics::Model& model, double fitted_over);
 
 private:
     struct Parts;

@@ -23,7 +23,7 @@ WatchFilter::WatchFilter(std::shared_ptr<const dynamics::HeavePlant> plant, Heav
 
 void WatchFilter::restart(double time, double gap) {
     time_ = time;
-    state_ = {gap - plant_->terms.sensor_bias, 0, 0};
+    state_ = {gap - plant_->terms.sensor_offset(time), 0, 0};
     middle_ = state_[0];
     spread_.setZero();
     spread_.diagonal() << unknown_gap * unknown_gap, unknown_velocity * unknown_velocity, noise_.slow * noise_.slow;
@@ -121,7 +121,7 @@ WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& 
 WatchInnovation WatchFilter::gap_innovation(const WatchStep& step) const {
     const double sigma = noise_.gap * step.gap_share, delay = plant_->terms.sensor_delay;
     const Eigen::Vector3d row(1, -delay, 1);
-    return innovation(step.gap - plant_->terms.sensor_bias - row.dot(state_), row, sigma * sigma);
+    return innovation(step.gap - plant_->terms.sensor_offset(step.time) - row.dot(state_), row, sigma * sigma);
 }
 
 WatchInnovation WatchFilter::velocity_innovation(const WatchStep& step) const {

@@ -20,12 +20,17 @@ constexpr double fitted_sigmas = 3;      ///< by which a fitted number may be of
 WatchScores::WatchScores(double block, double usual_step, double false_alarms_per_day, double fitted_over)
     : block_(block), least_count_(least_filled * block / usual_step) {
     constexpr std::size_t tests = watch_directions * TwoSidedCusum::tests(false) + TwoSidedCusum::tests(true);
-    const double blocks = 86400 / block / false_alarms_per_day * static_cast<double>(tests);
+    mean_blocks_ = std::max(86400 / block / false_alarms_per_day * static_cast<double>(tests), 2.0);
+    begin_tests(fitted_over);
+}
+
+void WatchScores::begin_tests(double fitted_over) {
+    tests_.clear();
     for (std::size_t j = 0; j <= watch_directions; ++j) {
         const bool scatter = j == watch_directions;
         // a number fitted to n blocks is off by its sigma, and the mean of later ones with it by 1/sqrt(n) of theirs
-        const double allowance = fitted_over > 0 && !scatter ? fitted_sigmas * std::sqrt(block / fitted_over) : 0;
-        tests_.emplace_back(std::max(blocks, 2.0), scatter, allowance);
+        const double allowance = fitted_over > 0 && !scatter ? fitted_sigmas * std::sqrt(block_ / fitted_over) : 0;
+        tests_.emplace_back(mean_blocks_, scatter, allowance);
     }
 }
 
@@ -53,12 +58,13 @@ std::optional<WatchScores::Passed> WatchScores::take(double time,
 
 std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judge) {
     std::optional<std::size_t> worst;
+    const Scales before = scales_;
     for (std::size_t j = 0; j <= watch_directions; ++j) {
         double u = 0;
         if (j == watch_directions) {
-            u = scatter_.normal(std::cbrt(squares_ / count_));  // nearly normal (Wilson and Hilferty 1931)
+            u = scales_.scatter.normal(std::cbrt(squares_ / count_));  // nearly normal (Wilson and Hilferty 1931)
         } else if (information_[j] > nothing_moved) {
-            u = directions_[j].normal(score_[j] / std::sqrt(information_[j]));
+            u = scales_.directions[j].normal(score_[j] / std::sqrt(information_[j]));
         } else {
             continue;
         }
@@ -66,7 +72,7 @@ std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judg
             worst = j;
         }
     }
-    late_.push_back({score_, information_});
+    late_.push_back({score_, information_, before});
     if (late_.size() > most_blocks) {
         late_.pop_front();
     }
@@ -74,6 +80,9 @@ std::optional<WatchScores::Passed> WatchScores::end_block(double time, bool judg
     begin_ = time;
     score_ = information_ = {};
     squares_ = count_ = 0;
+    if (worst && !before_change_) {
+        before_change_ = late_[late_.size() - blocks_since(*worst)].before;
+    }
     return worst ? std::optional(what_shows(*worst)) : std::nullopt;
 }
 
@@ -82,7 +91,7 @@ WatchScores::Passed WatchScores::what_shows(std::size_t test) const {
     if (out.scatter) {
         return out;
     }
-    const std::size_t blocks = std::clamp<std::size_t>(tests_[test].steps_since(), 1, late_.size());
+    const std::size_t blocks = blocks_since(test);
     Block since;
     std::array<double, watch_directions> explained{};  // fall of -2 log likelihood
     for (std::size_t j = 0; j < watch_directions; ++j) {
@@ -103,10 +112,28 @@ WatchScores::Passed WatchScores::what_shows(std::size_t test) const {
     return out;
 }
 
+std::size_t WatchScores::blocks_since(std::size_t test) const {
+    return std::clamp<std::size_t>(tests_[test].steps_since(), 1, late_.size());
+}
+
 void WatchScores::reset() {
     for (TwoSidedCusum& test : tests_) {
         test.reset();
     }
+    if (before_change_) {
+        scales_.directions = before_change_->directions;
+    }
+    before_change_.reset();
+}
+
+void WatchScores::go_on(double fitted_over) {
+    if (before_change_) {
+        scales_ = *before_change_;
+    }
+    before_change_.reset();
+    begin_tests(fitted_over);
+    restart();
+    late_.clear();
 }
 
 void WatchScores::restart() {

@@ -29,7 +29,11 @@ public:
     };
     /// `judge` false: the vehicle is known to be the model, the scores learn their scale from it.
     std::optional<Passed> take(double time, const std::array<std::optional<WatchResidual>, 2>& residuals, bool judge);
+    /// After an alarm that was seen to: sums begin anew, and what the scores said since the change that gave it counts
+    /// no more for their scale. How much the readings scatter is learned on.
     void reset();
+    /// The same with another model, whose numbers were fitted over so many s: the scatter is that from before, too.
+    void go_on(double fitted_over);
     /// The clock began anew: the block that has begun is forgotten.
     void restart();
     [[nodiscard]] double nearest() const;
@@ -39,16 +43,24 @@ public:
 private:
     std::optional<Passed> end_block(double time, bool judge);
     [[nodiscard]] Passed what_shows(std::size_t test) const;
-    double block_, least_count_, judged_ = 0;
+    void begin_tests(double fitted_over);
+    [[nodiscard]] std::size_t blocks_since(std::size_t test) const;
+    double block_, least_count_, mean_blocks_, judged_ = 0;
     std::optional<double> begin_;
     std::array<double, watch_directions> score_{}, information_{};
+    /// What the scores are judged by: those before.
+    struct Scales {
+        std::array<SelfStartingScore, watch_directions> directions;
+        SelfStartingLevel scatter;
+    };
     struct Block {
         std::array<double, watch_directions> score{}, information{};
+        Scales before;
     };
     std::deque<Block> late_;  ///< the last ones
     double squares_ = 0, count_ = 0;
-    std::array<SelfStartingScore, watch_directions> directions_;
-    SelfStartingLevel scatter_;
+    Scales scales_;
+    std::optional<Scales> before_change_;  ///< of the first alarm since reset()
     std::vector<TwoSidedCusum> tests_;
 };
 

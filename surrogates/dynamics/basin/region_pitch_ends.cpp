@@ -98,7 +98,7 @@ void PitchEnds::add_attractor(const HeaveEquilibrium& e) {
         worst = std::max(worst, mode.value.real());
     }
     const HeaveTerms& terms = plant_.vertical().terms;
-    if (worst < -settling && terms.waves.empty() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
+    if (worst < -settling && !terms.forced_in_time() && terms.history == 0 && !plant_.vertical().loop_has_states()) {
         hold(capture, system.a);
     }
     captures_.push_back(std::move(capture));

@@ -5,6 +5,7 @@
 
 #define UNDERBODY_EFFECTS(X)    \
     X(constant_force)           \
+    X(growing_force)            \
     X(coulomb_friction)         \
     X(linear_damping)           \
     X(quadratic_damping)        \

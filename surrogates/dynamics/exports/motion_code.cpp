@@ -338,14 +338,16 @@ private:
         write("correction", corrections);
         out_ += "static const double growth[] = " + listed(growth.empty() ? std::vector<double>{0} : growth) +
                 ";\nstatic const double wave[] = " + listed(wave.empty() ? std::vector<double>{0} : wave) + ";\n";
-        out_ += "static const vertical_terms terms = {" + number(t.mass) + ", " + number(t.constant) + ", " + added +
-                ", " + count(t.growth.size()) + ", " + count(t.waves.size()) + ", " + count(corrections.size()) +
-                ", growth, wave, " + (corrections.empty() ? "NULL" : "correction_sources") + ",\n    ";
+        out_ += "static const vertical_terms terms = {" + number(t.mass) + ", " + number(t.constant) + ", " +
+                number(t.growth_of_force) + ", " + added + ", " + count(t.growth.size()) + ", " +
+                count(t.waves.size()) + ", " + count(corrections.size()) + ", growth, wave, " +
+                (corrections.empty() ? "NULL" : "correction_sources") + ",\n    ";
         law("", t.linear, t.quadratic, t.mixed ? &t.mixed_law : nullptr);
-        for (const double value :
-             {t.current, t.extra_linear, t.extra_quadratic, t.friction, t.friction_width, t.film, t.stiffness,
-              t.stiffness_gap, t.rough_near, t.rough_far, t.rough_length, t.thrust_loss, t.thrust_length, t.history,
-              t.actuator.dead_zone, t.actuator.gain, t.actuator.lag, t.contact_gap, t.restitution}) {
+        for (const double value : {t.current,        t.extra_linear,  t.extra_quadratic, t.friction,
+                                   t.friction_width, t.film,          t.stiffness,       t.stiffness_gap,
+                                   t.rough_near,     t.rough_far,     t.rough_length,    t.rough_sharpness,
+                                   t.thrust_loss,    t.thrust_length, t.history,         t.actuator.dead_zone,
+                                   t.actuator.gain,  t.actuator.lag,  t.contact_gap,     t.restitution}) {
             out_ += ", " + number(value);
         }
         const HistoryKernel& kernel = history_kernel();

@@ -41,6 +41,7 @@ struct EffectSearch {
     double prior = 1;                 ///< before the data were seen
     bool scanned = false;             ///< amplitude, frequency, phase: its starts come from a scan over frequency
     bool lift_unless_named = false;   ///< changes lift_force alone where a use names no quantity
+    std::string also_held{};          ///< time series: tried once more with this number held where it is by default
     bool scales_reading = false;      ///< of two at once it acts on what the other leaves
     std::string same_law_as{};        ///< another name for the law of this effect: the rig tells which it is
     std::string beside{};             ///< time series: tried once more with this other effect's numbers free
@@ -124,7 +125,8 @@ public:
                                        const Conditions& set_point, const EffectUse& use) const;
 
     /// False where the effect can change nothing that was measured of this model. Else narrows bounds, moves neutral
-    /// values and the prior to what is possible on this vehicle. Default: true, nothing narrowed.
+    /// values and the prior to what is possible on this vehicle; equal bounds hold a number. Default: true, nothing
+    /// narrowed.
     [[nodiscard]] virtual bool look(const SearchContext& context, std::vector<EffectParameter>& parameters,
                                     double& prior) const;
 

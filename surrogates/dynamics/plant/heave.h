@@ -91,7 +91,7 @@ public:
     [[nodiscard]] double guided_resistance(double h, double w) const;
     /// Everything up but lift, the water's drag and waves, N: weight, input, guide, film, springs, corrections, memory.
     [[nodiscard]] double other_force(double h, double w, const Moment& moment, const double* memory = nullptr) const;
-    [[nodiscard]] double wave_force(double t) const;
+    [[nodiscard]] double timed_force(double t) const;
     /// Lift of tables as the roughness of the ground changes it.
     [[nodiscard]] double roughened(double lift, double h) const;
     /// Mass that the history force adds by its fastest part; 0 without one.

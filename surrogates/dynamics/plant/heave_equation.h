@@ -56,16 +56,20 @@ struct HeaveSlopes {
 };
 
 /// By what the roughness of the ground multiplies the lift, with its slope along the gap.
-inline double roughness_factor(double near, double far, double length, double h, double& slope) {
-    const double x = h / length, base = 1 + x * x;
-    slope = -2 * x * (near + far) / (base * base) / length;
-    return 1 + (near - far * x * x) / base;
+inline double roughness_factor(double near, double far, double length, double sharpness, double h, double& slope) {
+    const bool square = sharpness == 2;
+    const double x = square ? h / length : std::max(h, 0.0) / length;
+    const double power = square ? x * x : std::pow(x, sharpness), base = 1 + power;
+    const double steep = square ? 2 * x : sharpness * std::pow(x, sharpness - 1);
+    slope = -steep * (near + far) / (base * base) / length;
+    return 1 + (near - far * power) / base;
 }
 
 inline void roughen(const HeaveTerms& terms, double h, HeaveLoad& lift) {
     if (terms.rough_near != 0 || terms.rough_far != 0) {
         double slope = 0;
-        const double factor = roughness_factor(terms.rough_near, terms.rough_far, terms.rough_length, h, slope);
+        const double factor =
+            roughness_factor(terms.rough_near, terms.rough_far, terms.rough_length, terms.rough_sharpness, h, slope);
         lift.slope_h = lift.slope_h * factor + lift.force * slope;
         lift.slope_w *= factor;
         lift.force *= factor;
@@ -114,9 +118,9 @@ inline void add_guided_resistance(const HeaveTerms& terms, double h, double w, d
     }
 }
 
-inline double wave_force(const HeaveTerms& terms, double t) {
+inline double timed_force(const HeaveTerms& terms, double t) {
     constexpr double two_pi = 6.283185307179586;
-    double force = 0;
+    double force = terms.growth_of_force * t;
     for (const HeaveTerms::Wave& wave : terms.waves) {
         force += wave.amplitude * std::sin(two_pi * wave.frequency * t + wave.phase);
     }
@@ -162,8 +166,8 @@ inline void add_forces(const HeaveTerms& terms, double h, double w, const HeaveM
                        HeaveLoad& load) {
     add_given_forces(terms, h, w, moment, held, load);
     add_guided_resistance<Slopes>(terms, h, w, moment.velocity_variance, load);
-    if (!terms.waves.empty()) {
-        load.force += wave_force(terms, moment.t);
+    if (terms.forced_in_time()) {
+        load.force += timed_force(terms, moment.t);
     }
     add_water_drag<Slopes>(terms, w, load);
 }

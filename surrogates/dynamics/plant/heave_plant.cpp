@@ -283,7 +283,7 @@ core::Problems HeavePlant::left_out_of_small_motions() const {
              {}}};
 }
 
-double HeavePlant::wave_force(double t) const { return dynamics::wave_force(terms, t); }
+double HeavePlant::timed_force(double t) const { return dynamics::timed_force(terms, t); }
 
 double HeavePlant::other_force(double h, double w, const Moment& moment, const double* memory) const {
     HeaveLoad load;
@@ -345,7 +345,7 @@ bool HeavePlant::autonomous() const {
     const bool corrections_over_time =
         std::any_of(terms.corrections.begin(), terms.corrections.end(),
                     [](const HeaveTerms::Correction& correction) { return contains(correction.axes, Channel::time); });
-    return terms.waves.empty() && terms.extras.empty() && terms.history == 0 && !corrections_over_time &&
+    return !terms.forced_in_time() && terms.extras.empty() && terms.history == 0 && !corrections_over_time &&
            !loop_has_states();
 }
 

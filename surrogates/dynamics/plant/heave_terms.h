@@ -64,7 +64,7 @@ struct HeaveSource {
 ///   F = -net_weight + lift(h, channels) + input - drag(w - current) - linear (w - current)
 ///       - quadratic (w - current)|w - current| + constant - friction sgn(w) - film/h^3 w
 ///       - input loss exp(-h/length)
-///       - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + corrections + history
+///       - stiffness (h - reference) + amplitude sin(2 pi f t + phase) + growth t + corrections + history
 /// All damping by the water, declared or an effect, acts on the velocity through the water; friction of a guide and the
 /// film over the ground act on the velocity itself. Evaluated in surrogates/dynamics/plant/heave_equation.h, nowhere
 /// else.
@@ -98,7 +98,10 @@ struct HeaveTerms {
         double amplitude = 0, frequency = 0, phase = 0;
     };
     std::vector<Wave> waves;
-    double rough_near = 0, rough_far = 0, rough_length = 1;  ///< on the sum of lift sources (surface_roughness)
+    double growth_of_force = 0;  ///< N/s: growth t
+    [[nodiscard]] bool forced_in_time() const { return !waves.empty() || growth_of_force != 0; }
+    double rough_near = 0, rough_far = 0;  ///< on the sum of lift sources (surface_roughness)
+    double rough_length = 1, rough_sharpness = 2;
     struct Correction {
         tables::ForceTable table;
         std::vector<Channel> axes;

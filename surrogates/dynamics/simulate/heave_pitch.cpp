@@ -101,7 +101,7 @@ void HeavePitch::forces(const PitchState& y, const Surroundings& around, bool wa
     loads.force += around.force;
     loads.moment += around.moment;
     if (waves) {
-        loads.force += vertical_.wave_force(around.t);
+        loads.force += vertical_.timed_force(around.t);
     }
     double slope = 0;
     loads.mass = vertical_.inertia(y[0], slope) + (around.memory ? vertical_.history_mass() : 0);

@@ -217,7 +217,7 @@ void RigidBody::free_loads(const BodyState& y, std::span<const double> thrust, c
     const double gap = conditions[Channel::gap], rise = u * st - w * ct;
     const HeaveMoment moment{around.t, std::isnan(around.input) ? vertical_.held_input() : around.input, nullptr,
                              conditions.value.data()};
-    loads.add({}, up(vertical_.other_force(gap, rise, moment, around.memory) + vertical_.wave_force(around.t)));
+    loads.add({}, up(vertical_.other_force(gap, rise, moment, around.memory) + vertical_.timed_force(around.t)));
     const Vector3 upright = cross(buoyancy_centre_, up(buoyancy_));
     for (std::size_t k = 0; k < 3; ++k) {
         loads.moment[k] += upright[k];

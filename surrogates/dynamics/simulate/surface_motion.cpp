@@ -68,7 +68,7 @@ SurfaceMotion::Loads SurfaceMotion::loads(const SurfaceState& y, std::span<const
     all.y = jets.force[1] - drag(model_.drag_sway, water, v) + side - effects.sway * v + pull_y;
     all.turn = jets.moment[2] - drag(model_.drag_yaw, water, r) + yaw_moment_(seen) + base_[0] * side +
                base_[1] * table_drag + effects.moment - effects.yaw * r;
-    all.up = lift + vertical_.other_force(gap_, 0, moment) + vertical_.wave_force(around.t) - jets.force[2] -
+    all.up = lift + vertical_.other_force(gap_, 0, moment) + vertical_.timed_force(around.t) - jets.force[2] -
              vertical_.water_drag(-vertical_.terms.current);
     all.pitch = jets.moment[1] + pitch_moment_(seen) + base_[0] * lift - base_[2] * table_drag + buoyancy_moment_ +
                 model_.vehicle.drag_height * drag_u;

@@ -52,17 +52,17 @@ void SeparatedPlant::advance(double& gap, double& velocity, double input, double
 
 namespace {
 
-/// What neither the one table of the ground nor the drag holds: waves, several tables, losses of thrust, corrections.
+/// What neither the one table of the ground nor the drag holds: waves, growth in time, several tables, losses of thrust, corrections.
 void add_other_force(SeparatedPlant& plant, const std::shared_ptr<const dynamics::HeavePlant>& heave) {
     const dynamics::HeaveTerms& terms = heave->terms;
     const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
                                      [](const auto& correction) { return correction.curve.empty(); });
-    if (!terms.waves.empty() || several || !heave->single_curve() || terms.thrust_loss != 0) {
+    if (terms.forced_in_time() || several || !heave->single_curve() || terms.thrust_loss != 0) {
         plant.other_force = [heave](double t, double h, double w, double u) {
             // Tables over the velocity too: what they give beside their value at rest.
             dynamics::HeaveLoad load = heave->table_lift(h, w);
             const dynamics::HeaveLoad at_rest = heave->table_lift(h, 0);
-            load.force += wave_force(heave->terms, t) - at_rest.force;
+            load.force += timed_force(heave->terms, t) - at_rest.force;
             load.slope_h -= at_rest.slope_h;
             const double lost = u * heave->terms.thrust_lost(h);
             load.force -= lost;

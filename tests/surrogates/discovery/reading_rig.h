@@ -17,6 +17,7 @@ namespace underbody::test {
 
 struct ReadingRig {
     double seconds = 40, noise = 2e-4;                                ///< m, of a reading; declared so
+    double drift = 0;                                                 ///< m/s, of the sensor, from each run's begin
     std::function<double(double)> felt = [](double u) { return u; };  ///< what the body feels of a commanded force
     /// N, what the model lacks: of time, gap and velocity, asked for in the order of time, anew in each run.
     std::function<double(double, double, double)> extra = [](double, double, double) { return 0.0; };
@@ -31,7 +32,7 @@ inline dynamics::MeasuredRun reading_run(const ReadingRig& rig, core::Random& ra
                  slow = random.uniform(0.03, 0.2), phase = random.uniform(0, 2 * std::numbers::pi);
     std::vector<double> time, gap, input;
     for (int k = 0; k * step < rig.seconds; ++k) {
-        const double t = k * step, reading = h + rig.noise * random.normal();
+        const double t = k * step, reading = h + rig.drift * t + rig.noise * random.normal();
         rate = 0.9 * rate + (k > 0 ? 0.1 * (reading - last) / step : 0);
         last = reading;
         const double wanted = middle + wave * std::sin(2 * std::numbers::pi * slow * t + phase) +

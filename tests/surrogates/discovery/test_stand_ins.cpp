@@ -32,23 +32,34 @@ Discovery found_in(const test::ReadingRig& rig, std::uint64_t seed) {
     return discover(test::heave_model(folder.path()), test::reading_runs(rig, seed), options);
 }
 
-bool corrected(const Discovery& found) {
-    return std::any_of(found.effects.begin(), found.effects.end(),
-                       [](const FoundEffect& effect) { return !effect.uses.empty(); });
-}
-
 }  // namespace
 
-/// The controller's force follows what grows in time, and so does the gap a little: neither is its law.
-TEST(StandIns, AForceThatGrowsInTimeIsALawOfTime) {
+/// The controller's force follows what grows in time, and so does the gap a little: neither is its law, nor is the
+/// sensor to blame, whose drift moves the reading and not the body.
+TEST(StandIns, AForceThatGrowsInTimeIsNoLawOfWhatFollowsItAndNoDriftOfTheSensor) {
     test::HeaveRig rig;
     rig.seconds = 40;
     for (const std::uint64_t seed : {1U, 2U}) {
         const Discovery found = found_in([](double t, double, double) { return -2e-4 * t; }, seed, rig);
-        EXPECT_EQ(found.verdict, "unknown") << found.sentence;
+        ASSERT_EQ(found.verdict, "effect") << found.sentence;
+        ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+        EXPECT_EQ(found.effects.front().name, "growing_force") << found.sentence;
+        EXPECT_GT(found.effects.front().probability, 0.9) << found.sentence;
+        EXPECT_NEAR(found.effects.front().parameters.front().value, -2e-4, 2e-5);
         EXPECT_THAT(found.depends_on, testing::ElementsAre("time")) << found.sentence;
-        EXPECT_FALSE(corrected(found)) << found.sentence;
-        EXPECT_FALSE(found.by_run) << found.sentence;
+    }
+}
+
+TEST(StandIns, ADriftOfTheSensorIsNoForceThatGrows) {
+    test::ReadingRig rig;
+    rig.drift = 6e-5;
+    for (const std::uint64_t seed : {1U, 2U}) {
+        const Discovery found = found_in(rig, seed);
+        ASSERT_EQ(found.verdict, "effect") << found.sentence;
+        ASSERT_EQ(found.effects.size(), 1U) << found.sentence;
+        EXPECT_EQ(found.effects.front().name, "gap_sensor_drift") << found.sentence;
+        EXPECT_GT(found.effects.front().probability, 0.9) << found.sentence;
+        EXPECT_NEAR(found.effects.front().parameters.front().value, rig.drift, 0.2 * rig.drift);
     }
 }
 

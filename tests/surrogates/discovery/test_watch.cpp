@@ -277,6 +277,58 @@ TEST(Watch, TextBetweenWildReadingsIsNoChange) {
     }
 }
 
+/// A model whose sensor drifts was followed with the bias alone: the drift became noise, of 0.47 mm for 0.19.
+TEST(Watch, ADriftThatTheModelHasIsNoChange) {
+    constexpr double rate = 5e-6;
+    const dynamics::Model model =
+        WatchedRig::model().with_effect(dynamics::make_use("gap_sensor_drift", {{"rate", rate}, {"bias", 0}}));
+    WatchedRig rig(14);
+    Watch watch(model, {});
+    while (rig.time < 1500) {
+        rig.bias = rate * rig.time;
+        EXPECT_FALSE(rig.show(watch)) << rig.time;
+    }
+    EXPECT_NEAR(watch.noise(), 2e-4, 1e-5);
+    EXPECT_EQ(watch.correlation_time(), 0);
+}
+
+/// What was found is not quite what happens: the rest is a change again, not noise.
+TEST(Watch, GoesOnWithAFoundModelAndTheNoiseFromBefore) {
+    WatchedRig rig(15);
+    Watch watch(WatchedRig::model(), {});
+    constexpr double change = 400, rate = 2e-5;
+    const auto alarm_until = [&](double end, double scale) {
+        std::optional<WatchAlarm> alarm;
+        while (!alarm && rig.time < end) {
+            rig.force = rig.time > change ? scale * rate * (rig.time - change) : 0;
+            alarm = rig.show(watch);
+        }
+        return alarm;
+    };
+    const auto alarm = alarm_until(700, 1);
+    ASSERT_TRUE(alarm);
+    const double noise = watch.noise();
+    watch.go_on_with(WatchedRig::model().with_effect(
+                         dynamics::make_use("growing_force", {{"rate", 1.2 * rate}, {"force", -1.2 * rate * change}})),
+                     rig.time - alarm->since);
+    EXPECT_EQ(watch.noise(), noise);
+    EXPECT_EQ(watch.correlation_time(), 0);
+    const double begun = rig.time;
+    EXPECT_TRUE(alarm_until(2400, 1)) << "a fifth less growth than the model says";
+    EXPECT_LT(rig.time, begun + 600);
+    // an alarm that goes on does not widen the scale of the scores
+    for (int again = 0; again < 4; ++again) {
+        watch.reset();
+        const double reset = rig.time;
+        EXPECT_TRUE(alarm_until(2400, 1));
+        EXPECT_LT(rig.time, reset + 120) << again;
+    }
+    watch.go_on_with(WatchedRig::model().with_effect(
+                         dynamics::make_use("growing_force", {{"rate", rate}, {"force", -rate * change}})),
+                     1000);
+    EXPECT_FALSE(alarm_until(rig.time + 900, 1));
+}
+
 TEST(Watch, RatesThatAreNoneAreRefused) {
     WatchOptions options;
     options.false_alarms_per_day = 0;

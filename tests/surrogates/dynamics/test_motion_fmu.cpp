@@ -130,7 +130,9 @@ Model with_everything(Model model) {
         .with_effect(make_use("history_force", {{"area", 0.01}}))
         .with_effect(make_use("gap_dependent_added_mass", {{"mass", 0.5}, {"length", 0.02}}))
         .with_effect(make_use("thrust_by_gap", {{"loss", 0.2}, {"length", 0.03}}))
-        .with_effect(make_use("surface_roughness", {{"near", 0.1}, {"far", 0.05}, {"length", 0.01}}))
+        .with_effect(make_use("growing_force", {{"rate", 2e-4}, {"force", -0.001}}))
+        .with_effect(
+            make_use("surface_roughness", {{"near", 0.1}, {"far", 0.05}, {"length", 0.01}, {"sharpness", 1.4}}))
         .with_effect(make_use("periodic_disturbance", {{"amplitude", 0.004}, {"frequency", 0.5}, {"phase", 0.3}}));
 }
 

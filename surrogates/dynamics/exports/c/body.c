@@ -101,7 +101,7 @@ static void free_loads(const moment *m, loads *l) {
     l->moment[0] = add(l->moment[0], force_at(&roll_moment, channel));
     l->moment[1] = add(l->moment[1], turn);
     l->moment[2] = add(l->moment[2], force_at(&yaw_moment, channel));
-    other = add(other_force(channel[CHANNEL_GAP], centre_velocity(m), acting_input(m), channel), wave_force(m->t));
+    other = add(other_force(channel[CHANNEL_GAP], centre_velocity(m), acting_input(m), channel), timed_force(m->t));
     if (terms.history != 0) {
         other = add(other, memory_force(centre_velocity(m), m->x + MEMORY_AT));
     }

@@ -14,7 +14,7 @@ static num acceleration(const moment *m, int with_memory) {
     const num h = m->x[0], w = m->x[1];
     num channel[CHANNELS], force = lift_of(m, channel), mass, slope;
     force = add(force, other_force(h, w, acting_input(m), channel));
-    force = add(force, wave_force(m->t));
+    force = add(force, timed_force(m->t));
     force = sub(force, water_drag(plus(w, -terms.current)));
     inertia(h, &mass, &slope);
     if (with_memory && terms.history != 0) {

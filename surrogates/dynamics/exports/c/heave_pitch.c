@@ -33,7 +33,7 @@ static void free_loads(const moment *m, loads *l) {
     up = roughened(force_at(&lift, channel), h);
     l->force = add(up, other_force(h, w, acting_input(m), channel));
     l->force = sub(l->force, water_drag(plus(w, -terms.current)));
-    l->force = add(l->force, wave_force(m->t));
+    l->force = add(l->force, timed_force(m->t));
     if (terms.history != 0) {
         l->force = add(l->force, memory_force(w, m->x + MEMORY_AT));
     }

@@ -6,7 +6,7 @@ typedef struct {
 } drag_law;
 
 typedef struct {
-    double mass, constant;
+    double mass, constant, growth_of_force;
     const grid *added_mass;
     int growths, waves, corrections;
     const double *growth; /* mass, length */
@@ -14,7 +14,7 @@ typedef struct {
     const source *correction;
     drag_law drag;
     double current, extra_linear, extra_quadratic, friction, friction_width, film, stiffness, stiffness_gap;
-    double rough_near, rough_far, rough_length, thrust_loss, thrust_length, history;
+    double rough_near, rough_far, rough_length, rough_sharpness, thrust_loss, thrust_length, history;
     double dead_zone, gain, lag;
     double contact_gap, restitution;
 } vertical_terms;
@@ -51,13 +51,22 @@ static num water_drag(num v) {
 }
 
 static num roughened(num lift, num h) {
-    num x, square;
+    double x, power, steep, base;
     if (terms.rough_near == 0 && terms.rough_far == 0) {
         return lift;
     }
-    x = times(1 / terms.rough_length, h);
-    square = mul(x, x);
-    return mul(lift, plus(quo(plus(times(-terms.rough_far, square), terms.rough_near), plus(square, 1)), 1));
+    x = h.v / terms.rough_length;
+    if (terms.rough_sharpness == 2) {
+        power = x * x;
+        steep = 2 * x;
+    } else {
+        x = x > 0 ? x : 0;
+        power = pow(x, terms.rough_sharpness);
+        steep = terms.rough_sharpness * pow(x, terms.rough_sharpness - 1);
+    }
+    base = 1 + power;
+    return mul(lift, with_slope(h, 1 + (terms.rough_near - terms.rough_far * power) / base,
+                                -steep * (terms.rough_near + terms.rough_far) / (base * base) / terms.rough_length));
 }
 
 /* What dead zone and gain of the actuator leave of a command. */
@@ -66,8 +75,8 @@ static num felt(num u) {
     return times(u.v < 0 ? -terms.gain : terms.gain, rest);
 }
 
-static num wave_force(double t) {
-    double force = 0;
+static num timed_force(double t) {
+    double force = terms.growth_of_force * t;
     int i;
     for (i = 0; i < terms.waves; ++i) {
         const double *w = terms.wave + 3 * i;
