@@ -39,7 +39,18 @@ std::vector<Attribution::Share> shares_by_names(const std::vector<FittedHypothes
         const double weight = std::log(one.hypothesis.prior) - 0.5 * (evidence / softened + one.occam - best.occam) -
                               (any && !finding[i] ? no_finding : 0.0);
         const auto [known, first] = by_names.try_emplace(one.hypothesis.names, Attribution::Share{i, weight});
-        if (!first && weight > known->second.probability) {
+        if (first) {
+            continue;
+        }
+        // with a number held or free it is one form, whose law owes nothing to other names: the score decides
+        const std::size_t before = known->second.hypothesis;
+        const auto price = [&](std::size_t k) {
+            return hypotheses[k].score() - 2 * std::log(hypotheses[k].hypothesis.prior);
+        };
+        const bool one_form =
+            hypotheses[before].hypothesis.form == one.hypothesis.form && finding[before] == finding[i];
+        const bool better = one_form ? price(i) < price(before) : weight > known->second.probability;
+        if (better) {
             known->second = {i, weight};
         }
     }

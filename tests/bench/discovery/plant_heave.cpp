@@ -54,7 +54,7 @@ struct Plant {
             if (n == "ambient_heave_current")
                 relative = w - e.a;
             else if (n == "surface_roughness")
-                lift *= 1 + e.a * (e.b - h) / (e.b + h);
+                lift *= 1 + e.a * (e.form < 0.5 ? (e.b - h) / (e.b + h) : 2 * std::exp2(-h / e.b) - 1);
             else if (n == "declared_parameter")
                 lift *= 1 + e.a;
             else if (n == "constant_force")
@@ -408,7 +408,7 @@ double jet_lift(double h) {
 
 namespace {
 
-/// `clear`: every run keeps clear of the ground.
+/// `clear`: every run keeps clear of the ground, and no strength is beyond what its effect can be.
 Sample draw_heave(const Case& wanted, bool& clear) {
     core::Random random(wanted.seed * 7919 + 17);
     std::vector<std::string> laws = wanted.names;
@@ -454,6 +454,10 @@ Sample draw_heave(const Case& wanted, bool& clear) {
             const double error = declared_error(probe);
             strength[i] *= std::clamp(target / std::max(error, 1e-9), 0.02, 50.0);
         }
+    }
+    for (std::size_t i = 0; i < laws.size(); ++i) {
+        // beyond it the lift far from a rough ground would change its sign
+        clear = clear && !(laws[i] == "surface_roughness" && std::abs(strength[i]) > 1);
     }
     const Plant plant = plant_of(laws, strength, shape);
     Sample sample;
