@@ -77,6 +77,7 @@ QTableWidget* new_table(const QString& name) {
 
 CompareNumbers::CompareNumbers(Desk& desk, QWidget* parent) : QTabWidget(parent), desk_(desk) {
     setDocumentMode(true);
+    setTabPosition(QTabWidget::South);  // the tabs stay where they are when curves take more room than rows
     forces_ = new_table("Forces of the cases and their differences to the first");
     forces_->setToolTip(
         "± is one standard deviation, as the study's tables know it (mesh study, stated error, scatter).\n"
@@ -402,6 +403,22 @@ std::vector<QStringList> CompareNumbers::rows() const {
         all.push_back(cells);
     }
     return all;
+}
+
+std::set<std::pair<std::size_t, int>> CompareNumbers::beyond() const {
+    std::set<std::pair<std::size_t, int>> found;
+    for (int row = 0; row < forces_->rowCount(); ++row) {
+        for (int column = 0, shown = 1; column < forces_->columnCount(); ++column) {
+            if (forces_->isColumnHidden(column)) {
+                continue;
+            }
+            if (const auto* item = forces_->item(row, column); item != nullptr && item->font().bold()) {
+                found.emplace(static_cast<std::size_t>(row) + 1, shown);
+            }
+            ++shown;
+        }
+    }
+    return found;
 }
 
 core::Table CompareNumbers::table() const {

@@ -5,6 +5,7 @@
 #include <QTabWidget>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ public:
     void show_cases(std::vector<ComparedCase> cases, bool differences);
     /// The forces as they are shown, for a sheet: a row of titles, then one a case.
     [[nodiscard]] std::vector<QStringList> rows() const;
+    /// Row and column, of `rows`, of the differences that are more than twice their joint standard deviation.
+    [[nodiscard]] std::set<std::pair<std::size_t, int>> beyond() const;
     [[nodiscard]] core::Table table() const;
     [[nodiscard]] bool has_table() const { return !cases_.empty(); }
     /// The tab in front is a plot, not rows of numbers.

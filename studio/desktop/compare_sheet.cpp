@@ -63,13 +63,17 @@ double add_text(Layout& layout, const QString& text, double x, double y, double 
     return y;
 }
 
-double add_table(Layout& layout, const std::vector<QStringList>& rows, double y) {
+double add_table(Layout& layout, const Sheet& sheet, double y) {
+    const auto& rows = sheet.rows;
+    const auto bold = [&](std::size_t row, int column) {
+        return row == 0 || column == 0 || sheet.bold.count({row, column}) > 0;
+    };
     std::vector<double> widths;
     for (std::size_t row = 0; row < rows.size(); ++row) {
         for (int column = 0; column < rows[row].size(); ++column) {
             const auto at = static_cast<std::size_t>(column);
             widths.resize(std::max(widths.size(), at + 1), 0);
-            const double words = QFontMetricsF(font_of(row == 0 || column == 0)).horizontalAdvance(rows[row][column]);
+            const double words = QFontMetricsF(font_of(bold(row, column))).horizontalAdvance(rows[row][column]);
             widths[at] = std::max(widths[at], words + 18);
         }
     }
@@ -78,7 +82,7 @@ double add_table(Layout& layout, const std::vector<QStringList>& rows, double y)
         for (int column = 0; column < rows[row].size(); ++column) {
             const double width = widths[static_cast<std::size_t>(column)];
             layout.items.push_back(
-                {QRectF(x, y, width - 8, line), rows[row][column], {}, row == 0 || column == 0, column > 0});
+                {QRectF(x, y, width - 8, line), rows[row][column], {}, bold(row, column), column > 0});
             x += width;
         }
         layout.size.setWidth(std::max(layout.size.width(), x + margin));
@@ -108,7 +112,7 @@ Layout laid_out(const Sheet& sheet) {
         }
         y = below;
     }
-    y = add_table(layout, sheet.rows, y + 4);
+    y = add_table(layout, sheet, y + 4);
     layout.size.setHeight(y + margin);
     return layout;
 }

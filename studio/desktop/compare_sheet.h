@@ -6,6 +6,7 @@
 #include <QString>
 #include <QStringList>
 #include <filesystem>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct Sheet {
     QString title;  ///< "pressure (Pa), -120 to 110"
     QString about;  ///< study, camera, zones
     std::vector<std::pair<QString, QImage>> cells;
-    std::vector<QStringList> rows;  ///< of the table of forces; the first: its titles
+    std::vector<QStringList> rows;               ///< of the table of forces; the first: its titles
+    std::set<std::pair<std::size_t, int>> bold;  ///< row and column of the table
 };
 
 /// How many columns of cells `count` pictures are laid out in.

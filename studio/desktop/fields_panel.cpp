@@ -144,7 +144,8 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
 }
 
 void FieldsPanel::draw_again(bool) {
-    const auto sources = wanted();
+    auto sources = wanted();
+    shared_ = title_by_difference(sources);
     stack_->setCurrentIndex(sources.empty() ? 0 : 1);
     lay_out(sources);
     bool all_ready = true;
@@ -152,7 +153,8 @@ void FieldsPanel::draw_again(bool) {
         Cell& cell = *cells_[i];
         const auto stamp = core::stamp_of(sources[i].file);
         cell.title->setText(sources[i].title);
-        cell.title->setToolTip(sources[i].title);
+        cell.title->setToolTip(sources[i].title + (shared_.isEmpty() ? QString() : "\nall: " + shared_));
+        cell.source.title = sources[i].title;
         if (cell.source.key() != sources[i].key() || !(cell.stamp == stamp)) {
             cell.source = sources[i];
             cell.stamp = stamp;
@@ -325,6 +327,9 @@ Sheet FieldsPanel::sheet() const {
                                                  : "from the 1st to the 99th hundredth of what is seen") +
                    ", the same for all";
     sheet.rows = numbers_->rows();
+    sheet.bold = numbers_->beyond();
+    sheet.about += sheet.bold.empty() ? "" : "; bold: more than twice the joint standard deviation";
+    sheet.about += shared_.isEmpty() ? QString() : "; all: " + shared_;
     return sheet;
 }
 

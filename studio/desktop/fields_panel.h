@@ -105,6 +105,8 @@ private:
     void add_body(QBoxLayout& left);
     void follow_controls();
     [[nodiscard]] std::vector<Source> wanted() const;
+    /// Cases beside each other are titled by what tells them apart; returns what all have in common.
+    [[nodiscard]] QString title_by_difference(std::vector<Source>& sources) const;
     [[nodiscard]] Source source_of(const cases::Case& one) const;
     [[nodiscard]] Source source_of(const std::filesystem::path& file) const;
     void lay_out(const std::vector<Source>& sources);
@@ -170,7 +172,8 @@ private:
     std::string probe_of_;  ///< what stands there, or is being looked up
     QPushButton* units_ = nullptr;
     CompareNumbers* numbers_ = nullptr;
-    QString unit_;  ///< of the colours
+    QString unit_;    ///< of the colours
+    QString shared_;  ///< conditions that all cases beside each other have
 };
 
 }  // namespace underbody::studio

@@ -1,5 +1,6 @@
 // Compare: which files are shown, how they are read, and what is done with one that cannot be.
 #include <QRegularExpression>
+#include <algorithm>
 
 #include "cases/case_loads.h"
 #include "core/error.h"
@@ -52,6 +53,44 @@ FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) co
         source.symmetry = said->second.symmetry.empty() ? source.symmetry : said->second.symmetry;
     }
     return source;
+}
+
+QString FieldsPanel::title_by_difference(std::vector<Source>& sources) const {
+    std::vector<const cases::Case*> known;
+    for (const auto& source : sources) {
+        const auto& all = session().study.cases;
+        const auto at =
+            std::find_if(all.begin(), all.end(), [&](const auto& one) { return "case/" + one.name == source.id; });
+        if (at == all.end()) {
+            return {};  // a file from outside has no conditions
+        }
+        known.push_back(&*at);
+    }
+    if (known.size() < 2) {
+        return {};
+    }
+    // Without the parts that all have, or with these alone.
+    const auto part_of = [&](cases::Conditions conditions, bool shared) {
+        const auto in_all = [&](const cases::Conditions& one) {
+            return std::all_of(known.begin(), known.end(),
+                               [&](const auto* other) { return other->conditions.satisfies(one); });
+        };
+        const cases::Conditions whole = conditions;
+        const auto part = [&](auto member, const auto& value) {
+            cases::Conditions one;
+            one.own_units = whole.own_units;
+            (one.*member).push_back(value);
+            return in_all(one) != shared;
+        };
+        std::erase_if(conditions.numbers, [&](const auto& value) { return part(&cases::Conditions::numbers, value); });
+        std::erase_if(conditions.texts, [&](const auto& value) { return part(&cases::Conditions::texts, value); });
+        return qt(conditions.label());
+    };
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const QString own = part_of(known[i]->conditions, false);
+        sources[i].title = qt(known[i]->name) + (own.isEmpty() ? "" : ": " + own);
+    }
+    return part_of(known.front()->conditions, true);
 }
 
 std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {

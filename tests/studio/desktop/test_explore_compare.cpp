@@ -9,10 +9,13 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QHeaderView>
+#include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPushButton>
+#include <QTabBar>
 #include <QTableView>
+#include <QTableWidget>
 #include <QTest>
 #include <QXmlStreamReader>
 #include <nlohmann/json.hpp>
@@ -26,6 +29,7 @@
 #include "studio/desktop/compare_sheet.h"
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/explore_panel.h"
+#include "studio/desktop/fields_panel.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/plot_view.h"
@@ -263,6 +267,45 @@ TEST_F(Window, ASheetIsWrittenWithItsCasesRangeAndUnits) {
         EXPECT_TRUE(words.contains(word)) << word << " in " << words.toStdString();
     }
     EXPECT_THROW(write_sheet(sheet, folder_.path() / "sheet.gif"), core::UsageError);
+}
+
+// Titles that repeat what all cases have took up to three lines each, so that bodies under one camera had several
+// sizes; a difference that is bold in the window was not on the sheet; the tabs went away from under the mouse.
+TEST_F(Window, CasesAreTitledByWhatTellsThemApart) {
+    open(computed_study());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    act("workspace compare");
+    settle(*window_);
+    const auto titled = [&] {
+        QStringList titles;
+        for (auto* label : panel<FieldsPanel>().findChildren<QLabel*>()) {
+            if (label->isVisible() && label->text().startsWith("ellipse-h")) {
+                titles << label->text();
+            }
+        }
+        return titles.join(" | ").toStdString();
+    };
+    EXPECT_EQ(titled(), "ellipse-h5-p0: gap 5 mm | ellipse-h2-p0: gap 2 mm");
+    auto& numbers = panel<CompareNumbers>();
+    std::set<std::pair<std::size_t, int>> bold;
+    for (std::size_t row = 1; row < numbers.rows().size(); ++row) {
+        for (int column = 0; column < numbers.rows()[row].size(); ++column) {
+            for (int at = 0; at < numbers.forces()->columnCount(); ++at) {
+                const auto* item = numbers.forces()->item(static_cast<int>(row) - 1, at);
+                if (item->font().bold() && item->text() == numbers.rows()[row][column]) {
+                    bold.emplace(row, column);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(numbers.beyond(), bold);
+    const QPoint bar = numbers.tabBar()->mapTo(window_.get(), QPoint());
+    numbers.setCurrentIndex(2);
+    settle(*window_);
+    EXPECT_EQ(numbers.tabBar()->mapTo(window_.get(), QPoint()), bar);
+    act("select case/ellipse-h5-p0");
+    settle(*window_);
+    EXPECT_NE(titled().find("0.5 m/s"), std::string::npos) << titled();
 }
 
 // The chance of a safe end, and shares over what is swept: the numbers of the library.
