@@ -15,6 +15,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/body_surface.h"
+#include "geometry/cases/flow_domain.h"
 
 namespace underbody::cases {
 
@@ -426,6 +427,27 @@ void examine_again(const Study& study, SweepCase& one, const std::string& submis
     examiner.examine(one);
 }
 
+namespace {
+
+void note_thin_gaps(const Study& study, const std::vector<Case>& cases, core::Problems& notes) {
+    std::vector<std::string> thin;
+    std::string doubt;
+    for (const auto& one : cases) {
+        const std::string found = geometry::doubt_of_gap(one.conditions.number("gap").value_or(1));
+        if (!found.empty()) {
+            thin.push_back(one.name);
+            doubt = found;
+        }
+    }
+    if (!thin.empty()) {
+        notes.push_back({core::Problem::Severity::warning,
+                         "case " + joined(thin, ", ", 3) + ": " + doubt,
+                         {(study.folder() / "study.toml").string(), {}, {}, {}}});
+    }
+}
+
+}  // namespace
+
 std::vector<Case> solved_cases(const Study& study, core::Problems& notes) {
     std::vector<Case> cases;
     if (!study.sweep) {
@@ -457,6 +479,7 @@ std::vector<Case> solved_cases(const Study& study, core::Problems& notes) {
         solved.zones = marker["walls"].get<std::vector<std::string>>();
         cases.push_back(std::move(solved));
     }
+    note_thin_gaps(study, cases, notes);
     if (!stale.empty()) {
         notes.push_back(
             {core::Problem::Severity::warning,

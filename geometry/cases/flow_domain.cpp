@@ -129,4 +129,14 @@ int checkpoint_interval(int iterations) {
 
 std::string digits(double value) { return core::format_number(value, 12); }
 
+std::string doubt_of_gap(double gap) {
+    if (gap >= smallest_tried_gap) {
+        return {};
+    }
+    return "the gap of " + core::format_number(1e3 * gap, 3) +
+           " mm is thinner than any that such a case was checked at (1 mm): walls of real bodies are rougher than "
+           "that, "
+           "and the flow in it is laminar where the turbulence model is not";
+}
+
 }  // namespace underbody::geometry

@@ -83,6 +83,12 @@ struct BlockCase {
 BlockCase write_block_case(const BodyShape& shape, const FlowOptions& options, const std::filesystem::path& folder,
                            core::Progress& progress = core::Progress::none());
 
+/// Smallest gap at which cases of such meshes were solved and held against something else, m: films of jets over 1 mm
+/// (docs/guide/sweep.md), EVIE from 2 mm (cases/evie/equal_mesh.csv).
+inline constexpr double smallest_tried_gap = 1e-3;
+/// What a mesh under a smaller one means; empty from it up.
+std::string doubt_of_gap(double gap);
+
 /// Writes for ANSYS: each patch and each boundary of the box as STL and OBJ in metres (`surfaces/`), a Fluent journal
 /// (`fluent.jou`: reads the mesh made from them, sets materials, moving ground, inlet, SST, force and moment reports,
 /// runs, exports), the same for CFX (`cfx.ccl`), and a CFD-Post session (`export.cse`) that writes the CSV Underbody

@@ -171,6 +171,9 @@ void show_doubts(Shell& shell, const DomainCommand& o, const geometry::Body& bod
     if (const std::string doubt = o.input.doubt(body.mesh); !doubt.empty()) {
         shell.show_warning(doubt);
     }
+    if (const std::string doubt = geometry::doubt_of_gap(o.flow.placement.gap); !doubt.empty()) {
+        shell.show_warning(doubt);
+    }
     if (domain.cells_in_gap < 3 && o.solver == "openfoam" && !blocks) {
         shell.show_warning("only " + rounded(domain.cells_in_gap, 2) +
                            " cells across the smallest clearance: choose a smaller --cell");

@@ -237,5 +237,17 @@ TEST(BodyCommand, WritesACaseForASolver) {
         << "never over another";
 }
 
+TEST(BodyCommand, SaysThatAGapIsThinnerThanAnyThatWasChecked) {
+    const core::TemporaryFolder folder;
+    const auto errors = [&](const std::string& gap, const std::string& out) {
+        return run_underbody(
+                   {"body", "domain", shape("ellipse"), "--gap", gap, "--mesh-density", "draft", "--out", out},
+                   folder.path())
+            .errors;
+    };
+    EXPECT_THAT(errors("0.9um", "thin"), testing::HasSubstr("gap of 0.0009 mm is thinner than any"));
+    EXPECT_EQ(errors("1mm", "checked"), "");
+}
+
 }  // namespace
 }  // namespace underbody::test
