@@ -264,9 +264,13 @@ void FieldsPanel::warn_of_loads(std::size_t index) {
         if (found.severity != core::Problem::Severity::warning) {
             continue;
         }
-        found.message = qt(found.message)
-                            .replace(half_model_option(), "half of a model? then 'Half model across \\1: take it so'")
-                            .toStdString();
+        QString said = qt(found.message);
+        if (const auto match = half_model_option().match(said); match.hasMatch()) {  // first what is to be done
+            said.remove(match.capturedStart(), match.capturedLength());
+            said = "half of a model? then 'Half model across " + match.captured(1) +
+                   ": take it so': " + said.remove(QRegularExpression("; $"));
+        }
+        found.message = said.toStdString();
         found.place.file = found.place.file.empty() ? cell.source.file.string() : found.place.file;
         Q_EMIT problem(found);
     }
