@@ -82,7 +82,7 @@ void every_estimator(Study& study) {
         const LoopRun quiet = close_loop(plant, law, e, calm), real = close_loop(plant, limited, e, rough);
         worst = std::max(worst, std::abs(quiet.hold_error));
         words += (words.empty() ? "" : "; ") + name + " " + number(1e3 * (law.reference_gap + quiet.hold_error), 5) +
-                 " mm, error of F_T " + number(1e3 * real.total_force_error, 2) + " mN and spread " +
+                 " mm, error of F_T " + number(1e3 * real.total_force_error.value(), 2) + " mN and spread " +
                  number(1e3 * real.hold_sigma, 2) + " mm in the rough loop";
     }
     study.claims.push_back({"8-each", "section 8.9", "The estimator of separate forces is what the loop needs",

@@ -72,10 +72,12 @@ nlohmann::json compare_estimators(const ControlArguments& a, const SeparatedPlan
             nlohmann::json item = run;
             item["estimator"] = name;
             list.push_back(item);
-            char line[160];
-            std::snprintf(line, sizeof line, "%-12s %10.4f  %10.4f  %16.4f  %15.2f%s\n", name.c_str(),
-                          1e3 * (law.reference_gap + run.hold_error), 1e3 * run.hold_sigma, 1e3 * run.total_force_error,
-                          100 * run.saturated,
+            char error[32] = "-", line[160];
+            if (run.total_force_error) {
+                std::snprintf(error, sizeof error, "%.4f", 1e3 * *run.total_force_error);
+            }
+            std::snprintf(line, sizeof line, "%-12s %10.4f  %10.4f  %16s  %15.2f%s\n", name.c_str(),
+                          1e3 * (law.reference_gap + run.hold_error), 1e3 * run.hold_sigma, error, 100 * run.saturated,
                           run.touched  ? "  touched the ground"
                           : run.finite ? ""
                                        : "  escaped");
@@ -297,9 +299,11 @@ int run_control(const ControlArguments& a, Shell& shell) {
         shell.print_json(json);
     }
     shell.print("gap at the end " + core::format_number(1e3 * loop.gap.back(), 6) + " mm, " +
-                core::format_number(1e3 * law.reference_gap, 6) + " mm asked for; error of the total force " +
-                core::format_number(1e3 * loop.total_force_error, 3) + " mN rms; at the limit " +
-                core::format_number(100 * loop.saturated, 3) + " % of the time\n" + region_text);
+                core::format_number(1e3 * law.reference_gap, 6) + " mm asked for; " +
+                (loop.total_force_error
+                     ? "error of the total force " + core::format_number(1e3 * *loop.total_force_error, 3) + " mN rms; "
+                     : std::string("no force is estimated; ")) +
+                "at the limit " + core::format_number(100 * loop.saturated, 3) + " % of the time\n" + region_text);
     return ExitCode::done;
 }
 

@@ -129,6 +129,7 @@ TEST_F(LearnAndEstimate, HoldsAGapAndDrawsWhereTheSensorsAreBlind) {
     for (const auto& e : estimators) {
         EXPECT_NEAR(e.at("final_gap").get<double>(), 0.6, e.at("estimator") == "none" ? 5e-3 : 2e-4)
             << e.at("estimator");
+        EXPECT_EQ(e.at("total_force_error").is_null(), e.at("estimator") == "none") << "what nobody estimates";
     }
     const auto region = test::run_underbody({"control",    "model.toml", "--hold",
                                              "0.6",        "--from",     "gap=0.5",

@@ -228,7 +228,7 @@ double Loop::velocity() const { return impl_->velocity; }
 
 namespace {
 
-void summarise(LoopRun& run, const ControlLaw& law) {
+void summarise(LoopRun& run, const ControlLaw& law, bool estimates) {
     const std::size_t n = run.time.size(), tail = std::max<std::size_t>(1, n / 10);
     double mean = 0, square = 0, force = 0;
     for (std::size_t i = n - tail; i < n; ++i) {
@@ -238,11 +238,13 @@ void summarise(LoopRun& run, const ControlLaw& law) {
     }
     run.hold_error = mean;
     run.hold_sigma = std::sqrt(std::max(0.0, square - mean * mean));
-    for (std::size_t i = n / 2; i < n; ++i) {
+    for (std::size_t i = n / 2; i < n && estimates; ++i) {
         const double e = run.total_estimate[i] - (run.ground_force[i] - run.drag_force[i] + run.disturbance[i]);
         force += e * e;
     }
-    run.total_force_error = std::sqrt(force / static_cast<double>(n - n / 2));
+    if (estimates) {
+        run.total_force_error = std::sqrt(force / static_cast<double>(n - n / 2));
+    }
 }
 
 }  // namespace
@@ -294,7 +296,7 @@ LoopRun close_loop(const SeparatedPlant& plant, const ControlLaw& law, const Loo
         }
     }
     run.saturated = static_cast<double>(limited) / static_cast<double>(run.time.size());
-    summarise(run, law);
+    summarise(run, law, estimator.source != ForceSource::none);
     return run;
 }
 
@@ -389,9 +391,12 @@ core::Table LoopRun::table() const {
 }
 
 void to_json(nlohmann::json& j, const LoopRun& run) {
-    j = {{"hold_error", run.hold_error}, {"hold_sigma", run.hold_sigma}, {"total_force_error", run.total_force_error},
+    j = {{"hold_error", run.hold_error}, {"hold_sigma", run.hold_sigma}, {"total_force_error", nullptr},
          {"saturated", run.saturated},   {"touched", run.touched},       {"finite", run.finite},
          {"final_gap", run.gap.back()}};
+    if (run.total_force_error) {
+        j["total_force_error"] = *run.total_force_error;
+    }
 }
 
 }  // namespace underbody::estimator

@@ -93,8 +93,9 @@ struct LoopRun {
         drag_estimate, total_estimate;
     double hold_error = 0;  ///< m, mean of gap - reference over the last tenth
     double hold_sigma = 0;  ///< m, deviation over the last tenth
-    double total_force_error =
-        0;  ///< N, rms over the second half, against F_g - F_d with the disturbance: all that acts unknown
+    /// N, rms over the second half, against F_g - F_d with the disturbance: all that acts unknown; none: nothing is
+    /// estimated.
+    std::optional<double> total_force_error;
     double saturated = 0;  ///< share of samples at the limit
     bool touched = false;  ///< reached the contact gap
     bool finite = true;
