@@ -254,18 +254,26 @@ double read_share(const TomlTable& table, const char* key, double fallback, doub
     return share;
 }
 
-TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, Study& study) {
-    TableSpec spec;
-    spec.name = unique_name(table, taken);
+std::vector<std::string> forces_and_moments() {
     std::vector<std::string> quantities;
     for (const auto& quantity : core::quantity_names()) {
         if (quantity.name.ends_with("_force") || quantity.name.ends_with("_moment")) {
             quantities.push_back(quantity.name);
         }
     }
-    spec.quantity = table.choice("quantity", quantities);
-    if (!study.symmetry.empty() &&
-        (spec.quantity == "side_force" || spec.quantity == "roll_moment" || spec.quantity == "yaw_moment")) {
+    return quantities;
+}
+
+bool cancelled_by_halves(const Study& study, const std::string& quantity) {
+    return !study.symmetry.empty() &&
+           (quantity == "side_force" || quantity == "roll_moment" || quantity == "yaw_moment");
+}
+
+TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, Study& study) {
+    TableSpec spec;
+    spec.name = unique_name(table, taken);
+    spec.quantity = table.choice("quantity", forces_and_moments());
+    if (cancelled_by_halves(study, spec.quantity)) {
         throw core::InputError(
             "symmetry", "the halves of a half model cancel its " + spec.quantity + ": a table of it would be nothing",
             table.place("quantity"), "whole models have it: [frame] without symmetry");
@@ -614,6 +622,12 @@ Study Study::read(const TomlTable& root, const fs::path& file) {
     read_steps(study, root);
     root.finish();
     return study;
+}
+
+std::vector<std::string> table_quantities(const Study& study) {
+    std::vector<std::string> quantities = forces_and_moments();
+    std::erase_if(quantities, [&study](const std::string& one) { return cancelled_by_halves(study, one); });
+    return quantities;
 }
 
 std::vector<const Case*> Study::select(const Conditions& where) const {

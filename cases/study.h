@@ -175,6 +175,10 @@ std::pair<Study, StudyResults> listed(const std::filesystem::path& path, const R
 /// How a [[table]] is fitted, wherever it is.
 tables::FitOptions fit_options(const TableSpec& spec);
 
+/// What a [[table]] of the study can be of: lift_force, pitch_moment ...; of half models what their halves do not
+/// cancel.
+std::vector<std::string> table_quantities(const Study& study);
+
 /// The points of a [[table]], one row a case of `results.loads` that fits `where`: its axes, its quantity, the
 /// conditions that all of them share, `case` and `settled`; and `QUANTITY_sigma` where an error is known of any point:
 /// the standard uncertainty of the mesh study that the table names, the relative error that it states and the case's

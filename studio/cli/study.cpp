@@ -256,6 +256,7 @@ void add_study_command(CLI::App& app, Shell& shell) {
         "  underbody study compare cases/evie --where-a mesh=coarse --where-b mesh=fine\n"
         "  underbody study add mystudy --files 'fields/{variant}-h{gap:mm}-p{pitch:deg}.csv' --condition speed=0.5m/s\n"
         "  underbody study add mystudy --files 'runs/{variant}-h{gap:mm}/case.foam' --symmetry y --zones hull,base\n"
+        "  underbody study add mystudy --table lift_force --where variant=ellipse,pitch=0deg --net-weight 0.3N\n"
         "  underbody study add mystudy --data flight.ulg --model glide.toml --channel "
         "gap=distance_sensor/current_distance\n"
         "  underbody study add mystudy --files 'hull_files/dp{design_point}/FFF/Fluent/*.dat.h5' --design-points "

@@ -4,6 +4,7 @@
 
 #include "cases/add_cases.h"
 #include "cases/add_measurement.h"
+#include "cases/add_table.h"
 #include "core/counted.h"
 #include "core/text.h"
 #include "studio/cli/study_parts.h"
@@ -91,17 +92,50 @@ int add_measurement(Shell& shell, const StudyArguments& arguments) {
     return done;
 }
 
+int add_table(Shell& shell, const StudyArguments& arguments) {
+    const auto added =
+        cases::with_new_table(arguments.folder, {arguments.table, arguments.name, arguments.axes, arguments.where,
+                                                 arguments.net_weight, arguments.virtual_mass, arguments.exports});
+    show_notes(shell, added.study);
+    cases::write_added(added);
+    const auto& table = added.study.tables.back();
+    std::string axes;
+    for (const auto& axis : table.axes) {
+        axes += (axes.empty() ? "" : " and ") + axis;
+    }
+    shell.print("table '" + table.name + "' of " + core::counted(added.cases, "case") + " over " + axes + " added to " +
+                added.file.string());
+    if (shell.json) {
+        shell.print_json({{"added", 1},
+                          {"study", added.file.string()},
+                          {"table", table.name},
+                          {"axes", table.axes},
+                          {"cases", added.cases},
+                          {"notes", json_of_notes(added.study, {})}});
+    }
+    return done;
+}
+
 /// Appends a [[case]] to study.toml (or starts one), checked before anything is written.
 int add(Shell& shell, const StudyArguments& arguments) {
-    if (arguments.files.empty() == arguments.data.empty()) {
-        throw core::UsageError("usage", "study add takes either --files (cases) or --data (a measurement)", {},
-                               "--files 'fields/{variant}-h{gap:mm}.csv', or --data runs --model model.toml");
+    if (int(!arguments.files.empty()) + int(!arguments.data.empty()) + int(!arguments.table.empty()) != 1) {
+        throw core::UsageError(
+            "usage", "study add takes one of --files (cases), --data (a measurement) and --table (a table of forces)",
+            {}, "--files 'fields/{variant}-h{gap:mm}.csv', --data runs --model model.toml, or --table lift_force");
+    }
+    if (arguments.table.empty() && !(arguments.axes.empty() && arguments.where.empty() && arguments.exports.empty() &&
+                                     arguments.net_weight.empty() && arguments.virtual_mass.empty())) {
+        throw core::UsageError("usage", "--axes, --where, --net-weight, --virtual-mass and --export are of --table");
     }
     if (!arguments.data.empty()) {
         return add_measurement(shell, arguments);
     }
-    if (!(arguments.model.empty() && arguments.name.empty() && arguments.channels.empty() && arguments.clock.empty())) {
+    if (!(arguments.model.empty() && arguments.channels.empty() && arguments.clock.empty() &&
+          (arguments.name.empty() || !arguments.table.empty()))) {
         throw core::UsageError("usage", "--model, --name, --channel and --clock are of a measurement (--data)");
+    }
+    if (!arguments.table.empty()) {
+        return add_table(shell, arguments);
     }
     const auto added = cases::with_new_cases(arguments.folder, new_cases(arguments));
     show_notes(shell, added.study);
@@ -126,7 +160,8 @@ void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
     command->add_option("--data", arguments->data,
                         "a measurement in place of cases: a folder with dataset.toml, or logs and tables of runs");
     command->add_option("--model", arguments->model, "of --data: the model that it is judged by");
-    command->add_option("--name", arguments->name, "of --data: name of the measurement (default: of the first file)");
+    command->add_option("--name", arguments->name,
+                        "of the measurement (default: of the first file) or table (default: its quantity in words)");
     command->add_option("--channel", arguments->channels,
                         "of --data: where a quantity stands: gap=rng_cm:cm, of a log gap=RFND/Dist (repeatable)");
     command->add_option("--clock", arguments->clock,
@@ -147,6 +182,15 @@ void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
                         "--files is the number behind dp");
     command->add_option("--parameter", arguments->parameters,
                         "of that table: P1=gap, \"P1=gap [mm]\", or P2= for no condition (repeatable)");
+    command->add_option("--table", arguments->table,
+                        "a table of forces of the cases: lift_force, drag_force, pitch_moment ...");
+    command->add_option("--axes", arguments->axes, "of --table: gap,pitch (default: what varies among its cases)")
+        ->delimiter(',');
+    command->add_option("--where", arguments->where, "of --table: its cases, such as variant=ellipse,pitch=0deg");
+    command->add_option("--net-weight", arguments->net_weight, "of --table: equilibria are found for it, 0.3N");
+    command->add_option("--virtual-mass", arguments->virtual_mass, "of --table: for frequency and kick, 3.954kg");
+    command->add_option("--export", arguments->exports, "of --table: formats written with the report: c,csv,json")
+        ->delimiter(',');
     shell.on(command, [arguments, &shell] { return add(shell, *arguments); });
 }
 

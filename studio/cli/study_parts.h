@@ -25,6 +25,8 @@ struct StudyArguments {
     std::string model, name, clock;
     std::string design_points;
     std::vector<std::string> parameters;
+    std::string table, where, net_weight, virtual_mass;  ///< of a table of forces
+    std::vector<std::string> axes, exports;
     std::string what;
     std::vector<std::string> zones;
     std::string other;        ///< folder of the second study

@@ -12,6 +12,7 @@
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/state/known_things.h"
+#include "studio/desktop/table_sheet.h"
 #include "studio/desktop/take_in_sheet.h"
 
 namespace underbody::studio {
@@ -98,6 +99,21 @@ TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {
         problems_->note(QString("Took in %1 cases. The same: ").arg(cases) + command);
         forget_files_of(study.toStdString());
         desk_->open_and_run(study.toStdString(), {{"workspace", "compare"}});
+    });
+    sheet->show();
+    return sheet;
+}
+
+TableSheet* MainWindow::make_table() {
+    if (!desk_->has_study()) {
+        throw core::InputError("missing", "there is no study whose cases could make a table", {},
+                               "open one, or drop CFD files on the window");
+    }
+    auto* sheet = new TableSheet(desk_->session().study, this);
+    connect(sheet, &TableSheet::failed, this, &MainWindow::show_failure);
+    connect(sheet, &TableSheet::made, this, [this](const QString& table, const QString& command) {
+        problems_->note("Made the table '" + table + "'. The same: " + command);
+        desk_->open_and_run(desk_->session().folder, {{"workspace", "tables"}, {"select", "table/" + table.toStdString()}});
     });
     sheet->show();
     return sheet;

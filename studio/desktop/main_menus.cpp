@@ -108,6 +108,9 @@ void MainWindow::build_study_menu() {
     need_study_.push_back(add(menu, "&Export again what is stale", "Ctrl+Shift+R", [this] { export_stale(); }));
     need_study_.push_back(add(menu, "Open re&port", "Ctrl+P", [this] { open_report(); }));
     menu->addSeparator();
+    need_study_.push_back(add(menu, "&Make a table of forces …", "Ctrl+T",
+                              [this] { guarded("making a table", [this] { make_table(); }); }));
+    menu->addSeparator();
     need_study_.push_back(add(menu, "&Next case", "Ctrl+PgDown", [this] { tree_->step(1); }));
     need_study_.push_back(add(menu, "Pre&vious case", "Ctrl+PgUp", [this] { tree_->step(-1); }));
     menu->addSeparator();

@@ -26,6 +26,7 @@ class MeasurementSheet;
 class Panel;
 class ProblemList;
 class StudyTree;
+class TableSheet;
 class TakeInSheet;
 
 class MainWindow : public QMainWindow {
@@ -45,6 +46,9 @@ public:
     void take_files(const std::vector<std::filesystem::path>& files);
     /// A sheet that makes cases of a study out of CFD files and folders of them; it deletes itself.
     TakeInSheet* take_in(const std::vector<std::filesystem::path>& files);
+    /// A sheet that makes a table of forces of the study's cases; it deletes itself. Throws core::InputError when no
+    /// study is open.
+    TableSheet* make_table();
     /// A sheet that makes a measurement of the study out of data sets, logs and tables. Throws core::InputError when no
     /// study is open.
     MeasurementSheet* take_measurements(const std::vector<std::filesystem::path>& data);

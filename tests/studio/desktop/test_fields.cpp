@@ -28,6 +28,7 @@
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/region_panel.h"
+#include "studio/desktop/table_sheet.h"
 #include "studio/desktop/take_in_sheet.h"
 #include "studio/desktop/theme.h"
 #include "studio/desktop/unit_sheet.h"
@@ -202,6 +203,45 @@ TEST_F(Window, ManyFilesAreTakenInAsCases) {
     settle(*window_);
     ASSERT_TRUE(window_->has_study()) << window_->last_error().toStdString();
     EXPECT_TRUE(window_->desk().state().files.empty());
+}
+
+// J1 goes on to a table: what the sheet says is what `study add --table` does.
+TEST_F(Window, CasesBecomeATableOfForces) {
+    const fs::path folder = folder_.path() / "exports";
+    for (const char* name : {"ellipse-h2-p0", "ellipse-h5-p0", "ellipse-h20-p0", "ellipse-h5-p1"}) {
+        fs::create_directories(folder);
+        fs::copy_file(shipped(std::string(name) + ".csv"), folder / (std::string(name) + ".csv"));
+    }
+    core::write_file(folder / "study.toml",
+                     "title = \"exports\"\n\n[frame]\nsymmetry = \"y\"\n\n[[case]]\n"
+                     "files = \"{variant}-h{gap:mm}-p{pitch:deg}.csv\"\nconditions = { speed = \"0.5 m/s\" }\n");
+    window_->open_study(folder);
+    settle(*window_);
+    auto* sheet = window_->make_table();
+    EXPECT_EQ(sheet->quantity()->findText("side_force"), -1) << "halves cancel it";
+    EXPECT_EQ(sheet->wrong(), "") << "over gap and pitch";
+    sheet->held()->setText("pitch=O deg");
+    EXPECT_NE(sheet->wrong(), "");
+    sheet->axes()->setText("gap");
+    sheet->held()->setText("variant=ellipse");
+    EXPECT_TRUE(sheet->wrong().contains("differ in pitch")) << sheet->wrong().toStdString();
+    sheet->held()->setText("pitch=0deg");
+    sheet->net_weight()->setText("0.2N");
+    ASSERT_EQ(sheet->wrong(), "");
+    const Words command = sheet->command();
+    sheet->accept();
+    settle(*window_);
+    EXPECT_EQ(window_->last_error(), "");
+    const auto& tables = window_->desk().session().study.tables;
+    ASSERT_EQ(tables.size(), 1U);
+    EXPECT_EQ(tables[0].name, "lift");
+    EXPECT_EQ(window_->desk().state().workspace, "tables");
+    EXPECT_EQ(window_->desk().session().results.tables.size(), 1U) << "computed";
+    const std::string written = core::read_file(folder / "study.toml");
+    core::write_file(folder / "study.toml", written.substr(0, written.find("\n[[table]]")));
+    const test::ProgramRun same = test::run_underbody({command.begin() + 1, command.end()}, folder);
+    EXPECT_EQ(same.exit_code, 0) << same.errors;
+    EXPECT_EQ(core::read_file(folder / "study.toml"), written) << "the command line does the same";
 }
 
 // J1: a folder with names that carry conditions becomes cases; what the sheet says is what `study add` does.

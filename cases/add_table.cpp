@@ -1,0 +1,251 @@
+#include "cases/add_table.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/counted.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/mistyped.h"
+#include "core/own_files.h"
+#include "core/text.h"
+#include "core/toml.h"
+#include "core/units.h"
+#include "surrogates/tables/exports/export.h"
+
+namespace underbody::cases {
+
+namespace {
+
+/// Name of a condition and its different values, as people read them.
+using Values = std::map<std::string, std::set<std::string>>;
+
+Values values_of(const std::vector<Case>& cases, bool words) {
+    Values values;
+    for (const auto& one : cases) {
+        for (const auto& [name, value] : one.conditions.numbers) {
+            const std::string unit = one.conditions.shown_unit(name);
+            if (!words) {
+                values[name].insert(core::format_number(core::convert(value, one.conditions.unit(name), unit), 9) +
+                                    " " + unit);
+            }
+        }
+        for (const auto& [name, value] : one.conditions.texts) {
+            if (words) {
+                values[name].insert(value);
+            }
+        }
+    }
+    return values;
+}
+
+std::vector<std::string> several(const Values& values) {
+    std::vector<std::string> names;
+    for (const auto& [name, found] : values) {
+        if (found.size() > 1) {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
+std::string joined(const std::set<std::string>& values) {
+    std::string text;
+    std::size_t count = 0;
+    for (const auto& value : values) {
+        text += (text.empty() ? "" : ", ") + (count < 4 ? value : std::string());
+        if (++count > 4) {
+            return text + "...";
+        }
+    }
+    return text;
+}
+
+std::vector<Case> cases_for(const Study& study, const NewTable& table) {
+    std::vector<Case> cases = study.cases;
+    if (cases.empty()) {
+        throw core::InputError("missing", "the study has no cases that a table could be made of", {},
+                               "`underbody study add STUDY` with CFD files adds some");
+    }
+    const Conditions wanted = table.where.empty() ? Conditions() : conditions_from(table.where);
+    const Values words = values_of(cases, true), numbers = values_of(cases, false);
+    std::erase_if(cases, [&](const Case& one) { return !one.conditions.satisfies(wanted); });
+    if (cases.empty()) {
+        std::string there;
+        for (const auto* values : {&words, &numbers}) {
+            for (const auto& [name, found] : *values) {
+                there += (there.empty() ? "" : "; ") + name + ": " + joined(found);
+            }
+        }
+        throw core::UsageError("missing", "no case of the study has " + table.where, {}, "there are " + there);
+    }
+    return cases;
+}
+
+std::vector<std::string> axes_of(const std::vector<Case>& cases, const NewTable& table) {
+    const Values numbers = values_of(cases, false), words = values_of(cases, true);
+    std::vector<std::string> axes = table.axes;
+    if (axes.empty()) {
+        axes = several(numbers);
+        std::stable_partition(axes.begin(), axes.end(), [](const std::string& name) { return name == "gap"; });
+    }
+    for (const auto& axis : axes) {
+        const auto found = numbers.find(axis);
+        if (found == numbers.end()) {
+            std::vector<std::string> names;
+            for (const auto& [name, values] : numbers) {
+                names.push_back(name);
+            }
+            throw core::UsageError("name", "no case of the table has a number '" + axis + "'", {},
+                                   core::did_you_mean(axis, names));
+        }
+        if (found->second.size() == 1) {
+            throw core::UsageError("choice",
+                                   "all " + core::counted(cases.size(), "case") + " of the table have " + axis + " " +
+                                       *found->second.begin() + ", so it is no axis",
+                                   {}, "leave it out, or take other cases");
+        }
+    }
+    for (const auto* values : {&words, &numbers}) {
+        for (const auto& name : several(*values)) {
+            if (std::find(axes.begin(), axes.end(), name) == axes.end()) {
+                throw core::UsageError(
+                    "choice", "the cases of the table differ in " + name + " (" + joined(values->at(name)) + ")", {},
+                    "hold one: " + name + "=" + *values->at(name).begin() +
+                        (values == &numbers ? ", or make it an axis" : ""));
+            }
+        }
+    }
+    if (axes.empty()) {
+        throw core::UsageError("missing",
+                               "nothing varies among the " + core::counted(cases.size(), "case") + " of the table", {},
+                               "a table needs cases of several gaps, pitches or speeds");
+    }
+    return axes;
+}
+
+std::string key_of(const std::string& name) {
+    const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return (c < 128 && std::isalnum(c) != 0) || c == '_' || c == '-';
+    });
+    return bare ? name : core::toml_string(name);
+}
+
+std::string where_text(const Conditions& where) {
+    std::string text;
+    const auto add = [&](const std::string& name, const std::string& value) {
+        text += (text.empty() ? "" : ", ") + key_of(name) + " = " + core::toml_string(value);
+    };
+    for (const auto& [name, value] : where.texts) {
+        add(name, value);
+    }
+    for (const auto& [name, value] : where.numbers) {
+        const std::string unit = where.shown_unit(name);
+        add(name,
+            core::format_number(core::convert(value, where.unit(name), unit), 12) + (unit == "1" ? "" : " " + unit));
+    }
+    return text.empty() ? "" : "where = { " + text + " }\n";
+}
+
+std::string list_text(const std::vector<std::string>& values) {
+    std::string text;
+    for (const auto& value : values) {
+        text += (text.empty() ? "" : ", ") + core::toml_string(value);
+    }
+    return "[" + text + "]\n";
+}
+
+void check_exports(const NewTable& table) {
+    std::vector<std::string> known;
+    for (const auto& format : tables::export_formats()) {
+        known.push_back(format.name);
+    }
+    for (const auto& format : table.exports) {
+        if (std::find(known.begin(), known.end(), format) == known.end()) {
+            throw core::UsageError("name", "there is no export format '" + format + "'", {},
+                                   core::did_you_mean(format, known));
+        }
+    }
+}
+
+/// "pitch moment" of pitch_moment, "lift" of lift_force, "lift over gap and speed" where there is a "lift".
+std::string name_of(const NewTable& table, const std::vector<std::string>& axes, const Study& study) {
+    const auto taken = [&study](const std::string& name) {
+        return std::any_of(study.tables.begin(), study.tables.end(), [&](const auto& one) { return one.name == name; });
+    };
+    if (!table.name.empty()) {
+        if (taken(table.name)) {
+            throw core::UsageError("exists", "the study has a table '" + table.name + "' already", {},
+                                   "give it another name");
+        }
+        return table.name;
+    }
+    std::string name =
+        table.quantity.ends_with("_force") ? table.quantity.substr(0, table.quantity.size() - 6) : table.quantity;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    std::string over = name;
+    for (const auto& axis : axes) {
+        over += (over.size() == name.size() ? " over " : " and ") + axis;
+    }
+    std::string free = taken(name) ? over : name;
+    for (int i = 2; taken(free); ++i) {
+        free = over + " " + std::to_string(i);
+    }
+    return free;
+}
+
+std::string table_text(const NewTable& table, const std::string& name, const std::vector<std::string>& axes) {
+    std::string text = "\n[[table]]\nname = " + core::toml_string(name) +
+                       "\nquantity = " + core::toml_string(table.quantity) + "\naxes = " + list_text(axes);
+    text += table.where.empty() ? "" : where_text(conditions_from(table.where));
+    text += table.net_weight.empty() ? "" : "net_weight = " + core::toml_string(table.net_weight) + "\n";
+    text += table.virtual_mass.empty() ? "" : "virtual_mass = " + core::toml_string(table.virtual_mass) + "\n";
+    return text + (table.exports.empty() ? "" : "exports = " + list_text(table.exports));
+}
+
+}  // namespace
+
+AddedTable with_new_table(const std::filesystem::path& folder, const NewTable& table) {
+    check_exports(table);
+    AddedTable added;
+    added.file = folder / "study.toml";
+    const std::string before = core::read_file(added.file);
+    const Study study = Study::from_text(before, added.file);
+    const auto cases = cases_for(study, table);
+    added.cases = cases.size();
+    const auto axes = axes_of(cases, table);
+    added.text = before + (before.ends_with('\n') ? "" : "\n") + table_text(table, name_of(table, axes, study), axes);
+    try {
+        added.study = Study::from_text(added.text, added.file);
+    } catch (const core::InputError& error) {  // in lines that nobody has seen yet
+        throw core::UsageError(error.kind(), error.message() + "; nothing was added to " + added.file.string(), {},
+                               error.hint());
+    }
+    return added;
+}
+
+void write_added(const AddedTable& added) {
+    const core::ReplacingAllowed of_the_user;  // who asked for it
+    core::write_file(added.file, added.text);
+}
+
+std::string guessed_where(const Study& study) {
+    std::map<std::string, std::map<std::string, std::size_t>> counts;
+    for (const auto& one : study.cases) {
+        for (const auto& [name, value] : one.conditions.texts) {
+            ++counts[name][value];
+        }
+    }
+    std::string where;
+    for (const auto& [name, values] : counts) {
+        const auto most = std::max_element(values.begin(), values.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        if (values.size() > 1) {
+            where += (where.empty() ? "" : ",") + name + "=" + most->first;
+        }
+    }
+    return where;
+}
+
+}  // namespace underbody::cases
