@@ -170,7 +170,8 @@ void ForcePanel::choose_table(bool fresh) {
         return;
     }
     if (spec == nullptr) {
-        why = desk_.has_study() ? "This study has no force tables: Study > Make a table of forces (Ctrl+T)" : "Open a study with force tables";
+        why = desk_.has_study() ? "This study has no force tables: Study > Make a table of forces (Ctrl+T)"
+                                : "Open a study with force tables";
     } else if (session().results.loads.rows() == 0) {
         why = "The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)";
     }
@@ -200,7 +201,8 @@ void ForcePanel::show_cases() {
     list_->hide();
     reach_->clear();
     about_->setText(
-        "<b>No force table yet.</b> The points are the loads of the cases. Study > Make a table of forces (Ctrl+T) makes "
+        "<b>No force table yet.</b> The points are the loads of the cases. Study > Make a table of forces (Ctrl+T) "
+        "makes "
         "one of them, with its error, equilibria and exports; or by hand, in study.toml:<pre>" +
         html(table_of_cases(session().study, session().results)) + "</pre>");
     plot_->show_figure(lift_of_cases(session().study, session().results), true);

@@ -113,7 +113,8 @@ TableSheet* MainWindow::make_table() {
     connect(sheet, &TableSheet::failed, this, &MainWindow::show_failure);
     connect(sheet, &TableSheet::made, this, [this](const QString& table, const QString& command) {
         problems_->note("Made the table '" + table + "'. The same: " + command);
-        desk_->open_and_run(desk_->session().folder, {{"workspace", "tables"}, {"select", "table/" + table.toStdString()}});
+        desk_->open_and_run(desk_->session().folder,
+                            {{"workspace", "tables"}, {"select", "table/" + table.toStdString()}});
     });
     sheet->show();
     return sheet;

@@ -52,7 +52,8 @@ void SeparatedPlant::advance(double& gap, double& velocity, double input, double
 
 namespace {
 
-/// What neither the one table of the ground nor the drag holds: waves, growth in time, several tables, losses of thrust, corrections.
+/// What neither the one table of the ground nor the drag holds: waves, growth in time, several tables, losses of
+/// thrust, corrections.
 void add_other_force(SeparatedPlant& plant, const std::shared_ptr<const dynamics::HeavePlant>& heave) {
     const dynamics::HeaveTerms& terms = heave->terms;
     const bool several = std::any_of(terms.corrections.begin(), terms.corrections.end(),
