@@ -23,7 +23,8 @@
 namespace {
 
 struct Options {
-    std::string study;
+    std::vector<std::string> files;  ///< the study, or what else is opened
+    std::string study;               ///< the first of them
     std::string screenshots;
     std::string log;
     std::string theme;
@@ -41,8 +42,9 @@ int parse(int argc, char** argv, Options& options) {
         "underbody-studio"};
     app.set_version_flag("--version", UNDERBODY_VERSION);
     app.add_option(
-        "STUDY", options.study,
-        "folder of a study (it holds study.toml), a session (.ubs), a SHAPE.toml or a CFD file; more with Ctrl+O");
+        "STUDY", options.files,
+        "folder of a study (it holds study.toml), a session (.ubs), a SHAPE.toml, or CFD files and folders of "
+        "them; more with Ctrl+O");
     app.add_option("--screenshot", options.screenshots,
                    "load the study, visit each workspace, save pictures of the window into this folder, and end")
         ->type_name("FOLDER");
@@ -69,6 +71,11 @@ int parse(int argc, char** argv, Options& options) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
+    }
+    options.study = options.files.empty() ? std::string() : options.files.front();
+    if (options.files.size() > 1 && !(options.screenshots.empty() && options.log.empty())) {
+        std::fprintf(stderr, "underbody-studio: --screenshot and --replay take one STUDY\n");
+        return 2;
     }
     if (!options.screenshots.empty() && options.study.empty() && options.log.empty()) {
         std::fprintf(stderr, "underbody-studio: --screenshot needs a STUDY or --replay FILE\n");
@@ -155,8 +162,8 @@ int run(int argc, char** argv) {
     }
     window.show();
     window.offer_recovery();
-    if (!options.study.empty()) {
-        window.take_files({options.study});
+    if (!options.files.empty()) {
+        window.take_files({options.files.begin(), options.files.end()});
     }
     return QApplication::exec();
 }

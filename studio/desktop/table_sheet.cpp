@@ -27,7 +27,6 @@ TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(par
         edit->setAccessibleName(name);
         edit->setPlaceholderText(example);
         form->addRow(label, edit);
-        connect(edit, &QLineEdit::textChanged, this, &TableSheet::follow);
         return edit;
     };
     quantity_ = new QComboBox;
@@ -37,7 +36,6 @@ TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(par
     }
     quantity_->setCurrentText("lift_force");
     form->addRow("&Force or moment", quantity_);
-    connect(quantity_, &QComboBox::currentTextChanged, this, &TableSheet::follow);
     held_ = row("&Cases with", "What its cases have", "all cases; such as variant=ellipse,pitch=0deg");
     axes_ = row("&Axes", "Axes", "what varies among its cases; such as gap,pitch");
     net_weight_ = row("Net &weight", "Net weight", "none; such as 0.3N: equilibria are found for it");
@@ -53,6 +51,10 @@ TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(par
     column->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::accepted, this, &TableSheet::accept);
     connect(buttons, &QDialogButtonBox::rejected, this, &TableSheet::reject);
+    connect(quantity_, &QComboBox::currentTextChanged, this, &TableSheet::follow);
+    for (auto* edit : {held_, axes_, net_weight_, name_}) {
+        connect(edit, &QLineEdit::textChanged, this, &TableSheet::follow);
+    }
     follow();
 }
 

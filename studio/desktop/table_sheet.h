@@ -42,10 +42,10 @@ private:
     void follow();
 
     std::filesystem::path study_;
-    QComboBox* quantity_;
-    QLineEdit *held_, *axes_, *net_weight_, *name_;
-    QLabel* said_;
-    QPushButton* make_;
+    QComboBox* quantity_ = nullptr;
+    QLineEdit *held_ = nullptr, *axes_ = nullptr, *net_weight_ = nullptr, *name_ = nullptr;
+    QLabel* said_ = nullptr;
+    QPushButton* make_ = nullptr;
     QString wrong_;
 };
 

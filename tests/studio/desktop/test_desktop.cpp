@@ -66,6 +66,9 @@ TEST(Desktop, TeachesItsUseAndItsKeys) {
     EXPECT_EQ(run_studio({"--version"}).exit_code, 0);
     EXPECT_EQ(run_studio({"--nonsense"}).exit_code, 2);
     EXPECT_EQ(run_studio({"--screenshot", "x"}).exit_code, 2) << "pictures of what?";
+    const auto two = run_studio({"a.csv", "b.csv", "--screenshot", "x"});
+    EXPECT_EQ(two.exit_code, 2);
+    EXPECT_NE(two.errors.find("take one STUDY"), std::string::npos) << two.errors;
 }
 
 TEST(Desktop, SaysThatThereIsNoDisplayInsteadOfAborting) {

@@ -212,6 +212,7 @@ TEST_F(Window, CasesBecomeATableOfForces) {
         fs::create_directories(folder);
         fs::copy_file(shipped(std::string(name) + ".csv"), folder / (std::string(name) + ".csv"));
     }
+    fs::copy_file(shipped("ellipse-h5-p0.csv"), folder / "other-h5-p0.csv");
     core::write_file(folder / "study.toml",
                      "title = \"exports\"\n\n[frame]\nsymmetry = \"y\"\n\n[[case]]\n"
                      "files = \"{variant}-h{gap:mm}-p{pitch:deg}.csv\"\nconditions = { speed = \"0.5 m/s\" }\n");
@@ -219,13 +220,14 @@ TEST_F(Window, CasesBecomeATableOfForces) {
     settle(*window_);
     auto* sheet = window_->make_table();
     EXPECT_EQ(sheet->quantity()->findText("side_force"), -1) << "halves cancel it";
+    EXPECT_EQ(sheet->held()->text(), "variant=ellipse") << "what most cases are of";
     EXPECT_EQ(sheet->wrong(), "") << "over gap and pitch";
     sheet->held()->setText("pitch=O deg");
     EXPECT_NE(sheet->wrong(), "");
     sheet->axes()->setText("gap");
     sheet->held()->setText("variant=ellipse");
     EXPECT_TRUE(sheet->wrong().contains("differ in pitch")) << sheet->wrong().toStdString();
-    sheet->held()->setText("pitch=0deg");
+    sheet->held()->setText("variant=ellipse,pitch=0deg");
     sheet->net_weight()->setText("0.2N");
     ASSERT_EQ(sheet->wrong(), "");
     const Words command = sheet->command();
