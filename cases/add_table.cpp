@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "cases/gap_groups.h"
 #include "core/counted.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -66,11 +67,10 @@ std::vector<Case> cases_for(const Study& study, const NewTable& table) {
     std::vector<Case> cases = study.cases;
     if (cases.empty()) {
         throw core::InputError("missing", "the study has no cases that a table could be made of", {},
-                               "`underbody study add STUDY` with CFD files adds some");
+                               "cases come of CFD files");
     }
-    const Conditions wanted = table.where.empty() ? Conditions() : conditions_from(table.where);
     const Values words = values_of(cases, true), numbers = values_of(cases, false);
-    std::erase_if(cases, [&](const Case& one) { return !one.conditions.satisfies(wanted); });
+    std::erase_if(cases, [&](const Case& one) { return !one.conditions.satisfies(table.where); });
     if (cases.empty()) {
         std::string there;
         for (const auto* values : {&words, &numbers}) {
@@ -78,7 +78,7 @@ std::vector<Case> cases_for(const Study& study, const NewTable& table) {
                 there += (there.empty() ? "" : "; ") + name + ": " + joined(found);
             }
         }
-        throw core::UsageError("missing", "no case of the study has " + table.where, {}, "there are " + there);
+        throw core::UsageError("missing", "no case of the study has " + text_of(table.where), {}, "there are " + there);
     }
     return cases;
 }
@@ -137,13 +137,11 @@ std::string where_text(const Conditions& where) {
     const auto add = [&](const std::string& name, const std::string& value) {
         text += (text.empty() ? "" : ", ") + key_of(name) + " = " + core::toml_string(value);
     };
+    for (const auto& [name, value] : where.numbers) {
+        add(name, written(value, where.unit(name)));
+    }
     for (const auto& [name, value] : where.texts) {
         add(name, value);
-    }
-    for (const auto& [name, value] : where.numbers) {
-        const std::string unit = where.shown_unit(name);
-        add(name,
-            core::format_number(core::convert(value, where.unit(name), unit), 12) + (unit == "1" ? "" : " " + unit));
     }
     return text.empty() ? "" : "where = { " + text + " }\n";
 }
@@ -156,7 +154,13 @@ std::string list_text(const std::vector<std::string>& values) {
     return "[" + text + "]\n";
 }
 
-void check_exports(const NewTable& table) {
+/// What is read only when the study is, or the table written.
+void check_words(const NewTable& table) {
+    for (const auto& [text, unit] : {std::pair(table.net_weight, "N"), std::pair(table.virtual_mass, "kg")}) {
+        if (!text.empty()) {
+            static_cast<void>(core::parse_in(text, unit));
+        }
+    }
     std::vector<std::string> known;
     for (const auto& format : tables::export_formats()) {
         known.push_back(format.name);
@@ -171,9 +175,7 @@ void check_exports(const NewTable& table) {
 
 /// "pitch moment" of pitch_moment, "lift" of lift_force, "lift over gap and speed" where there is a "lift".
 std::string name_of(const NewTable& table, const std::vector<std::string>& axes, const Study& study) {
-    const auto taken = [&study](const std::string& name) {
-        return std::any_of(study.tables.begin(), study.tables.end(), [&](const auto& one) { return one.name == name; });
-    };
+    const auto taken = [&study](const std::string& name) { return study.find_table(name) != nullptr; };
     if (!table.name.empty()) {
         if (taken(table.name)) {
             throw core::UsageError("exists", "the study has a table '" + table.name + "' already", {},
@@ -195,27 +197,44 @@ std::string name_of(const NewTable& table, const std::vector<std::string>& axes,
     return free;
 }
 
-std::string table_text(const NewTable& table, const std::string& name, const std::vector<std::string>& axes) {
-    std::string text = "\n[[table]]\nname = " + core::toml_string(name) +
-                       "\nquantity = " + core::toml_string(table.quantity) + "\naxes = " + list_text(axes);
-    text += table.where.empty() ? "" : where_text(conditions_from(table.where));
+}  // namespace
+
+PlannedTable plan_table(const Study& study, const NewTable& table) {
+    check_words(table);
+    const auto cases = cases_for(study, table);
+    PlannedTable planned;
+    planned.cases = cases.size();
+    planned.axes = axes_of(cases, table);
+    planned.name = name_of(table, planned.axes, study);
+    return planned;
+}
+
+std::string lines_of(const NewTable& table, const PlannedTable& planned) {
+    std::string text = "[[table]]\nname = " + core::toml_string(planned.name) +
+                       "\nquantity = " + core::toml_string(table.quantity) + "\naxes = " + list_text(planned.axes);
+    text += where_text(table.where);
     text += table.net_weight.empty() ? "" : "net_weight = " + core::toml_string(table.net_weight) + "\n";
     text += table.virtual_mass.empty() ? "" : "virtual_mass = " + core::toml_string(table.virtual_mass) + "\n";
     return text + (table.exports.empty() ? "" : "exports = " + list_text(table.exports));
 }
 
-}  // namespace
+NewTable proposed_table(const Study& study) {
+    std::vector<const Conditions*> conditions;
+    for (const auto& one : study.cases) {
+        conditions.push_back(&one.conditions);
+    }
+    NewTable table;
+    table.axes = {"gap"};
+    table.where = held_by_fullest(gap_groups(conditions));
+    return table;
+}
 
 AddedTable with_new_table(const std::filesystem::path& folder, const NewTable& table) {
-    check_exports(table);
     AddedTable added;
     added.file = folder / "study.toml";
     const std::string before = core::read_file(added.file);
-    const Study study = Study::from_text(before, added.file);
-    const auto cases = cases_for(study, table);
-    added.cases = cases.size();
-    const auto axes = axes_of(cases, table);
-    added.text = before + (before.ends_with('\n') ? "" : "\n") + table_text(table, name_of(table, axes, study), axes);
+    added.planned = plan_table(Study::from_text(before, added.file), table);
+    added.text = before + (before.ends_with('\n') ? "\n" : "\n\n") + lines_of(table, added.planned);
     try {
         added.study = Study::from_text(added.text, added.file);
     } catch (const core::InputError& error) {  // in lines that nobody has seen yet
@@ -228,24 +247,6 @@ AddedTable with_new_table(const std::filesystem::path& folder, const NewTable& t
 void write_added(const AddedTable& added) {
     const core::ReplacingAllowed of_the_user;  // who asked for it
     core::write_file(added.file, added.text);
-}
-
-std::string guessed_where(const Study& study) {
-    std::map<std::string, std::map<std::string, std::size_t>> counts;
-    for (const auto& one : study.cases) {
-        for (const auto& [name, value] : one.conditions.texts) {
-            ++counts[name][value];
-        }
-    }
-    std::string where;
-    for (const auto& [name, values] : counts) {
-        const auto most = std::max_element(values.begin(), values.end(),
-                                           [](const auto& a, const auto& b) { return a.second < b.second; });
-        if (values.size() > 1) {
-            where += (where.empty() ? "" : ",") + name + "=" + most->first;
-        }
-    }
-    return where;
 }
 
 }  // namespace underbody::cases

@@ -127,4 +127,30 @@ Conditions conditions_from(const std::string& text) {
     return conditions;
 }
 
+std::string written(double value, const std::string& unit) {
+    std::string text = core::told(value, unit);
+    try {
+        Conditions exact;
+        exact.set("value", value);
+        Conditions read;
+        read.set("value", core::parse_in(text, unit));
+        if (read.satisfies(exact)) {
+            return text;
+        }
+    } catch (const core::Error&) {  // a unit of the user's own
+    }
+    return core::format_number(value, 17) + (unit == "1" ? "" : " " + unit);
+}
+
+std::string text_of(const Conditions& conditions) {
+    std::string text;
+    for (const auto& [name, value] : conditions.numbers) {
+        text += (text.empty() ? "" : ",") + name + "=" + written(value, conditions.unit(name));
+    }
+    for (const auto& [name, value] : conditions.texts) {
+        text += (text.empty() ? "" : ",") + name + "=" + value;
+    }
+    return text;
+}
+
 }  // namespace underbody::cases

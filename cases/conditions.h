@@ -36,6 +36,12 @@ struct Conditions {
     [[nodiscard]] std::string label() const;
 };
 
+/// A number as people write it where that reads back as the same number ("12.345 deg"), else in SI with all its digits.
+std::string written(double value, const std::string& unit);
+/// "pitch=2 deg,variant=ellipse": what conditions_from reads as the same conditions, words that hold a comma or an
+/// equal sign excepted.
+std::string text_of(const Conditions& conditions);
+
 /// SI unit of a number in the conditions of a case: of a known quantity, and of the density of its water; none: a word
 /// of the user's own.
 std::optional<std::string> condition_unit(const std::string& name);

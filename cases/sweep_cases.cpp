@@ -10,6 +10,7 @@
 #include "cases/sweep.h"
 #include "cases/sweep_parts.h"
 #include "cases/sweep_slurm.h"
+#include "core/counted.h"
 #include "core/file.h"
 #include "core/inputs.h"
 #include "core/text.h"
@@ -431,17 +432,18 @@ namespace {
 
 void note_thin_gaps(const Study& study, const std::vector<Case>& cases, core::Problems& notes) {
     std::vector<std::string> thin;
-    std::string doubt;
+    double thinnest = geometry::smallest_tried_gap;
     for (const auto& one : cases) {
-        const std::string found = geometry::doubt_of_gap(one.conditions.number("gap").value_or(1));
-        if (!found.empty()) {
+        const double gap = one.conditions.number("gap").value_or(thinnest);
+        if (gap < geometry::smallest_tried_gap) {
             thin.push_back(one.name);
-            doubt = found;
+            thinnest = std::min(thinnest, gap);
         }
     }
     if (!thin.empty()) {
         notes.push_back({core::Problem::Severity::warning,
-                         "case " + joined(thin, ", ", 3) + ": " + doubt,
+                         core::counted(thin.size(), "case") + " (" + joined(thin, ", ", 3) +
+                             "): " + geometry::doubt_of_gap(thinnest),
                          {(study.folder() / "study.toml").string(), {}, {}, {}}});
     }
 }

@@ -135,8 +135,7 @@ std::string doubt_of_gap(double gap) {
     }
     return "the gap of " + core::format_number(1e3 * gap, 3) +
            " mm is thinner than any that such a case was checked at (1 mm): walls of real bodies are rougher than "
-           "that, "
-           "and the flow in it is laminar where the turbulence model is not";
+           "that, and the flow in it is laminar where the turbulence model is not";
 }
 
 }  // namespace underbody::geometry

@@ -83,8 +83,8 @@ struct BlockCase {
 BlockCase write_block_case(const BodyShape& shape, const FlowOptions& options, const std::filesystem::path& folder,
                            core::Progress& progress = core::Progress::none());
 
-/// Smallest gap at which cases of such meshes were solved and held against something else, m: films of jets over 1 mm
-/// (docs/guide/sweep.md), EVIE from 2 mm (cases/evie/equal_mesh.csv).
+/// Smallest gap at which cases of such meshes were solved and held against something else, m: EVIE from 1 mm
+/// (cases/evie/equal_mesh.csv), films of jets over 1 mm (docs/guide/sweep.md).
 inline constexpr double smallest_tried_gap = 1e-3;
 /// What a mesh under a smaller one means; empty from it up.
 std::string doubt_of_gap(double gap);

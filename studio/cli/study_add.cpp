@@ -93,24 +93,25 @@ int add_measurement(Shell& shell, const StudyArguments& arguments) {
 }
 
 int add_table(Shell& shell, const StudyArguments& arguments) {
+    const auto where = arguments.where.empty() ? cases::Conditions() : cases::conditions_from(arguments.where);
     const auto added =
-        cases::with_new_table(arguments.folder, {arguments.table, arguments.name, arguments.axes, arguments.where,
+        cases::with_new_table(arguments.folder, {arguments.table, arguments.name, arguments.axes, where,
                                                  arguments.net_weight, arguments.virtual_mass, arguments.exports});
     show_notes(shell, added.study);
     cases::write_added(added);
-    const auto& table = added.study.tables.back();
+    const auto& table = added.planned;
     std::string axes;
     for (const auto& axis : table.axes) {
         axes += (axes.empty() ? "" : " and ") + axis;
     }
-    shell.print("table '" + table.name + "' of " + core::counted(added.cases, "case") + " over " + axes + " added to " +
+    shell.print("table '" + table.name + "' of " + core::counted(table.cases, "case") + " over " + axes + " added to " +
                 added.file.string());
     if (shell.json) {
         shell.print_json({{"added", 1},
                           {"study", added.file.string()},
                           {"table", table.name},
                           {"axes", table.axes},
-                          {"cases", added.cases},
+                          {"cases", table.cases},
                           {"notes", json_of_notes(added.study, {})}});
     }
     return done;

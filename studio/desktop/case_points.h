@@ -1,8 +1,6 @@
 // The loads of cases over the gap, where a study has no force table yet.
 #pragma once
 
-#include <string>
-
 #include "cases/study.h"
 #include "core/figure.h"
 
@@ -11,9 +9,5 @@ namespace underbody::studio {
 /// Lift over gap, points of cases that differ in the gap alone in one colour; without points where the cases have no
 /// gap or no lift.
 [[nodiscard]] core::Figure lift_of_cases(const cases::Study& study, const cases::StudyResults& results);
-
-/// The [[table]] that makes a force table of them, as a study.toml has it: of the cases that differ in the gap alone,
-/// those that are most. Empty where there are no points.
-[[nodiscard]] std::string table_of_cases(const cases::Study& study, const cases::StudyResults& results);
 
 }  // namespace underbody::studio

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/add_table.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -200,11 +201,17 @@ void ForcePanel::show_cases() {
     hide_beside();
     list_->hide();
     reach_->clear();
-    about_->setText(
-        "<b>No force table yet.</b> The points are the loads of the cases. Study > Make a table of forces (Ctrl+T) "
-        "makes "
-        "one of them, with its error, equilibria and exports; or by hand, in study.toml:<pre>" +
-        html(table_of_cases(session().study, session().results)) + "</pre>");
+    QString how;
+    try {
+        const cases::NewTable table = cases::proposed_table(session().study);
+        how =
+            "Study > Make a table of forces (Ctrl+T) makes one of them, with its error, equilibria and exports; or by "
+            "hand, in study.toml:<pre>" +
+            html(cases::lines_of(table, cases::plan_table(session().study, table))) + "</pre>";
+    } catch (const core::Error& error) {
+        how = "They make no table over the gap: " + html(error.message());
+    }
+    about_->setText("<b>No force table yet.</b> The points are the loads of the cases. " + how);
     plot_->show_figure(lift_of_cases(session().study, session().results), true);
 }
 

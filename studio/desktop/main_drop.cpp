@@ -95,9 +95,9 @@ TakeInSheet* MainWindow::take_in(const std::vector<fs::path>& files) {
     }
     auto* sheet = new TakeInSheet(*jobs_, folder, files, this);
     connect(sheet, &TakeInSheet::failed, this, &MainWindow::show_failure);
-    connect(sheet, &TakeInSheet::taken, this, [this](const QString& study, const QString& command, int cases) {
+    connect(sheet, &TakeInSheet::taken, this, [this, sheet](const QString& study, const QString& command, int cases) {
         problems_->note(QString("Took in %1 cases. The same: ").arg(cases) + command);
-        forget_files_of(study.toStdString());
+        forget_files_of(sheet->taken_in());
         desk_->open_and_run(study.toStdString(), {{"workspace", "compare"}});
     });
     sheet->show();
@@ -121,12 +121,11 @@ TableSheet* MainWindow::make_table() {
 }
 
 /// Files that are cases now no longer stand beside the study as files from outside.
-void MainWindow::forget_files_of(const fs::path& study) {
-    const auto opened = cases::Study::open(study);
+void MainWindow::forget_files_of(const cases::Study& study) {
     Words words = {"remove"};
     for (const auto& entry : desk_->state().files) {
         const std::string path = entry.substr(entry.find(':') + 1);
-        if (entry.starts_with("field:") && std::any_of(opened.cases.begin(), opened.cases.end(), [&](const auto& one) {
+        if (entry.starts_with("field:") && std::any_of(study.cases.begin(), study.cases.end(), [&](const auto& one) {
                 return fs::absolute(one.file).lexically_normal() == fs::path(path);
             })) {
             words.push_back(path);

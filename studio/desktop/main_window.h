@@ -101,7 +101,7 @@ private:
     void watch_files();
     void take_in_what_is_shown();
     void compare_files(const std::vector<std::filesystem::path>& files, bool remembered);
-    void forget_files_of(const std::filesystem::path& study);
+    void forget_files_of(const cases::Study& study);
     void open_report();
     void export_picture();
     void export_table();

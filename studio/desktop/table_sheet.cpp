@@ -15,7 +15,19 @@
 
 namespace underbody::studio {
 
-TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(parent), study_(study.folder()) {
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) {
+        text += (text.empty() ? "" : ",") + name;
+    }
+    return text;
+}
+
+}  // namespace
+
+TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(parent), study_(study) {
     setObjectName("table_sheet");
     setWindowTitle("A table of forces");
     setAttribute(Qt::WA_DeleteOnClose);
@@ -40,7 +52,9 @@ TableSheet::TableSheet(const cases::Study& study, QWidget* parent) : QDialog(par
     axes_ = row("&Axes", "Axes", "what varies among its cases; such as gap,pitch");
     net_weight_ = row("Net &weight", "Net weight", "none; such as 0.3N: equilibria are found for it");
     name_ = row("&Name", "Name of the table", "the quantity in words");
-    held_->setText(qt(cases::guessed_where(study)));
+    const cases::NewTable proposed = cases::proposed_table(study);
+    held_->setText(qt(cases::text_of(proposed.where)));
+    axes_->setText(qt(listed(proposed.axes)));
     column->addLayout(form);
     said_ = new QLabel;
     said_->setWordWrap(true);
@@ -63,7 +77,7 @@ cases::NewTable TableSheet::wanted() const {
     cases::NewTable table;
     table.quantity = quantity_->currentText().toStdString();
     table.name = text(name_);
-    table.where = text(held_);
+    table.where = text(held_).empty() ? cases::Conditions() : cases::conditions_from(text(held_));
     table.net_weight = text(net_weight_);
     for (const auto& axis : axes_->text().split(',', Qt::SkipEmptyParts)) {
         table.axes.push_back(axis.trimmed().toStdString());
@@ -73,18 +87,14 @@ cases::NewTable TableSheet::wanted() const {
 
 Words TableSheet::command() const {
     const cases::NewTable table = wanted();
-    Words words = {"underbody", "study", "add", study_.string(), "--table", table.quantity};
+    Words words = {"underbody", "study", "add", study_.folder().string(), "--table", table.quantity};
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) {
             words.insert(words.end(), {option, value});
         }
     };
-    std::string axes;
-    for (const auto& axis : table.axes) {
-        axes += (axes.empty() ? "" : ",") + axis;
-    }
-    add("--where", table.where);
-    add("--axes", axes);
+    add("--where", cases::text_of(table.where));
+    add("--axes", listed(table.axes));
     add("--net-weight", table.net_weight);
     add("--name", table.name);
     return words;
@@ -92,15 +102,10 @@ Words TableSheet::command() const {
 
 void TableSheet::follow() {
     try {
-        const auto added = cases::with_new_table(study_, wanted());
-        const auto& table = added.study.tables.back();
-        std::string axes;
-        for (const auto& axis : table.axes) {
-            axes += (axes.empty() ? "" : " and ") + axis;
-        }
+        const auto table = cases::plan_table(study_, wanted());
         wrong_.clear();
-        said_->setText(qt("'" + table.name + "' of " + core::counted(added.cases, "case") + " over " + axes + ":  " +
-                          line_of(command())));
+        said_->setText(qt("'" + table.name + "' of " + core::counted(table.cases, "case") + " over " +
+                          listed(table.axes) + ":  " + line_of(command())));
     } catch (const core::Error& error) {
         wrong_ = qt(error.message() + (error.hint().empty() ? "" : " (" + error.hint() + ")"));
         said_->setText(wrong_);
@@ -110,9 +115,9 @@ void TableSheet::follow() {
 
 void TableSheet::accept() {
     try {
-        const auto added = cases::with_new_table(study_, wanted());
+        const auto added = cases::with_new_table(study_.folder(), wanted());
         cases::write_added(added);
-        Q_EMIT made(qt(added.study.tables.back().name), qt(line_of(command())));
+        Q_EMIT made(qt(added.planned.name), qt(line_of(command())));
         QDialog::accept();
     } catch (...) {
         Q_EMIT failed("making a table", std::current_exception());

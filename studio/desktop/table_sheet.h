@@ -3,7 +3,6 @@
 #pragma once
 
 #include <QDialog>
-#include <filesystem>
 
 #include "cases/add_table.h"
 #include "studio/desktop/state/words.h"
@@ -41,7 +40,7 @@ private:
     [[nodiscard]] cases::NewTable wanted() const;
     void follow();
 
-    std::filesystem::path study_;
+    cases::Study study_;
     QComboBox* quantity_ = nullptr;
     QLineEdit *held_ = nullptr, *axes_ = nullptr, *net_weight_ = nullptr, *name_ = nullptr;
     QLabel* said_ = nullptr;

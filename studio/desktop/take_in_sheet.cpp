@@ -360,6 +360,7 @@ void TakeInSheet::accept() {
     try {
         const auto added = cases::with_new_cases(study_, wanted());
         cases::write_added(added);
+        taken_in_ = added.study;
         Q_EMIT taken(qt(study_.string()), qt(line_of(command())), static_cast<int>(added.count));
         QDialog::accept();
     } catch (...) {

@@ -33,6 +33,8 @@ public:
     [[nodiscard]] QTableWidget* files() const { return files_; }
     [[nodiscard]] QComboBox* half() const { return half_; }
     [[nodiscard]] const std::vector<QComboBox*>& units() const { return choices_; }
+    /// The study with them, once they are taken in.
+    [[nodiscard]] const cases::Study& taken_in() const { return taken_in_; }
     /// `underbody study add ...`
     [[nodiscard]] Words command() const;
     /// What is wrong with what stands there; empty: it can be taken in.
@@ -66,6 +68,7 @@ private:
     std::vector<std::string> names_;
     std::vector<postproc::UnstatedUnit> unstated_;
     std::vector<QComboBox*> choices_;
+    cases::Study taken_in_;
     QLineEdit* pattern_ = nullptr;
     QLineEdit* conditions_ = nullptr;
     QTableWidget* files_ = nullptr;

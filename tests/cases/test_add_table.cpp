@@ -40,14 +40,16 @@ private:
 };
 
 TEST_F(AddedTables, AreMadeOfWhatVaries) {
-    NewTable table;
-    table.where = guessed_where(Study::open(folder()));
-    EXPECT_EQ(table.where, "variant=ellipse") << "the shape that most cases are of";
+    NewTable table = proposed_table(Study::open(folder()));
+    EXPECT_EQ(text_of(table.where), "pitch=0 deg,variant=ellipse") << "the fullest curve over the gap";
+    EXPECT_THAT(table.axes, ElementsAre("gap"));
+    table.axes = {};
+    table.where = conditions_from("variant=ellipse");
     const AddedTable both = with_new_table(folder(), table);
-    EXPECT_EQ(both.cases, 4u);
+    EXPECT_EQ(both.planned.cases, 4u);
     EXPECT_THAT(both.study.tables.back().axes, ElementsAre("gap", "pitch"));
     EXPECT_EQ(both.study.tables.back().name, "lift");
-    table.where = "variant=ellipse,pitch=0deg";
+    table.where = conditions_from("variant=ellipse,pitch=0deg");
     table.net_weight = "0.3 N";
     table.exports = {"c", "csv"};
     write_added(with_new_table(folder(), table));
@@ -63,16 +65,21 @@ TEST_F(AddedTables, AreMadeOfWhatVaries) {
 
 TEST_F(AddedTables, SayWhyTheyCannotBeMade) {
     EXPECT_THAT(refusal({}), HasSubstr("the cases of the table differ in variant (box, ellipse) | hold one"));
-    EXPECT_THAT(refusal({.where = "variant=elipse"}), HasSubstr("no case of the study has variant=elipse"));
-    EXPECT_THAT(refusal({.axes = {"gap"}, .where = "variant=ellipse"}), HasSubstr("differ in pitch (0 deg, 1 deg)"));
-    EXPECT_THAT(refusal({.axes = {"gap", "speed"}, .where = "variant=ellipse,pitch=0deg"}),
+    EXPECT_THAT(refusal({.where = conditions_from("variant=elipse")}),
+                HasSubstr("no case of the study has variant=elipse"));
+    EXPECT_THAT(refusal({.axes = {"gap"}, .where = conditions_from("variant=ellipse")}),
+                HasSubstr("differ in pitch (0 deg, 1 deg)"));
+    EXPECT_THAT(refusal({.axes = {"gap", "speed"}, .where = conditions_from("variant=ellipse,pitch=0deg")}),
                 HasSubstr("all 3 cases of the table have speed 0.5 m/s, so it is no axis"));
-    EXPECT_THAT(refusal({.axes = {"gpa"}, .where = "variant=ellipse"}), HasSubstr("did you mean 'gap'?"));
-    EXPECT_THAT(refusal({.where = "variant=box"}), HasSubstr("nothing varies among the 1 case"));
-    EXPECT_THAT(refusal({.quantity = "lift_forc", .where = "variant=ellipse"}),
+    EXPECT_THAT(refusal({.axes = {"gpa"}, .where = conditions_from("variant=ellipse")}),
+                HasSubstr("did you mean 'gap'?"));
+    EXPECT_THAT(refusal({.where = conditions_from("variant=box")}), HasSubstr("nothing varies among the 1 case"));
+    EXPECT_THAT(refusal({.quantity = "lift_forc", .where = conditions_from("variant=ellipse")}),
                 HasSubstr("did you mean 'lift_force'?"));
-    EXPECT_THAT(refusal({.where = "variant=ellipse", .net_weight = "3mm"}), HasSubstr("another dimension than 'N'"));
-    EXPECT_THAT(refusal({.where = "variant=ellipse", .exports = {"cvs"}}), HasSubstr("did you mean 'csv'?"));
+    EXPECT_THAT(refusal({.where = conditions_from("variant=ellipse"), .net_weight = "3mm"}),
+                HasSubstr("another dimension than 'N'"));
+    EXPECT_THAT(refusal({.where = conditions_from("variant=ellipse"), .exports = {"cvs"}}),
+                HasSubstr("did you mean 'csv'?"));
 }
 
 }  // namespace

@@ -220,11 +220,15 @@ TEST_F(Window, CasesBecomeATableOfForces) {
     settle(*window_);
     auto* sheet = window_->make_table();
     EXPECT_EQ(sheet->quantity()->findText("side_force"), -1) << "halves cancel it";
-    EXPECT_EQ(sheet->held()->text(), "variant=ellipse") << "what most cases are of";
-    EXPECT_EQ(sheet->wrong(), "") << "over gap and pitch";
+    EXPECT_EQ(sheet->held()->text(), "pitch=0 deg,variant=ellipse") << "the fullest curve over the gap";
+    EXPECT_EQ(sheet->axes()->text(), "gap");
+    EXPECT_EQ(sheet->wrong(), "");
     sheet->held()->setText("pitch=O deg");
     EXPECT_NE(sheet->wrong(), "");
-    sheet->axes()->setText("gap");
+    sheet->net_weight()->setText("3mm");
+    sheet->held()->setText("variant=ellipse,pitch=0deg");
+    EXPECT_TRUE(sheet->wrong().contains("another dimension")) << sheet->wrong().toStdString();
+    sheet->net_weight()->clear();
     sheet->held()->setText("variant=ellipse");
     EXPECT_TRUE(sheet->wrong().contains("differ in pitch")) << sheet->wrong().toStdString();
     sheet->held()->setText("variant=ellipse,pitch=0deg");

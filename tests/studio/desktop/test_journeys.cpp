@@ -11,6 +11,7 @@
 #include <QTest>
 #include <QWheelEvent>
 
+#include "cases/add_table.h"
 #include "core/table.h"
 #include "studio/desktop/case_points.h"
 #include "studio/desktop/compare_numbers.h"
@@ -107,8 +108,9 @@ TEST_F(Journey, CasesWithoutATableAreDrawnAndTheTableIsSaid) {
         EXPECT_DOUBLE_EQ(figure.points[0].x[i], 1000 * loads.numbers("gap")[i]);
         EXPECT_DOUBLE_EQ(figure.points[0].y[i], loads.numbers("lift_force")[i]);
     }
+    const cases::NewTable table = cases::proposed_table(session.study);
     core::write_file(study / "study.toml", core::read_file(study / "study.toml") + "\n" +
-                                               table_of_cases(session.study, session.results) + "\n");
+                                               cases::lines_of(table, cases::plan_table(session.study, table)));
     window_->desk().reload();
     settle(*window_);
     ASSERT_TRUE(panel<ForcePanel>().table()) << window_->last_error().toStdString();
@@ -132,7 +134,7 @@ TEST_F(Journey, OfSeveralConditionsTheTableTakesTheFullest) {
         results.case_loads.back().values = {{"lift_force", "N", lift}};
         study.cases.push_back(one);
     };
-    EXPECT_EQ(table_of_cases(study, results), "");
+    EXPECT_EQ(cases::text_of(cases::proposed_table(study).where), "");
     EXPECT_TRUE(lift_of_cases(study, results).points.empty());
     for (const double pitch : {0.0, 0.1, core::convert(12.345, "deg", "rad"), core::convert(2, "deg", "rad")}) {
         study = {};
@@ -148,18 +150,15 @@ TEST_F(Journey, OfSeveralConditionsTheTableTakesTheFullest) {
         const auto figure = lift_of_cases(study, results);
         ASSERT_EQ(figure.points.size(), 4U);
         EXPECT_EQ(figure.points[0].x.size(), 3U);
-        const std::string text = table_of_cases(study, results);
+        const std::string text = cases::text_of(cases::proposed_table(study).where);
         EXPECT_EQ(text.find("speed"), std::string::npos) << "the same in all: " << text;
-        std::string where = text.substr(text.find("{") + 1);
-        where = where.substr(0, where.find("}"));
-        std::erase(where, '"');
-        std::erase(where, ' ');
-        const auto wanted = cases::conditions_from(where);
+        const auto wanted = cases::conditions_from(text);
         for (std::size_t i = 0; i < study.cases.size(); ++i) {
             EXPECT_EQ(study.cases[i].conditions.satisfies(wanted), i < 3) << text << " of case " << i;
         }
     }
-    EXPECT_NE(table_of_cases(study, results).find("pitch = \"2 deg\""), std::string::npos);
+    const cases::NewTable table = cases::proposed_table(study);
+    EXPECT_NE(cases::lines_of(table, cases::plan_table(study, table)).find("pitch = \"2 deg\""), std::string::npos);
 }
 
 TEST_F(Journey, AnEmptyStudyIsNoTrap) {
