@@ -33,6 +33,8 @@ int flat_across(const Bounds& b, double size) {
 
 }  // namespace
 
+std::string half_model_advice(const std::string& axis) { return "a half model? then option 'symmetry " + axis + "'"; }
+
 std::optional<LikelyHalf> likely_half(const Field& field) {
     if (field.dimension != 3) {
         return {};

@@ -17,4 +17,8 @@ struct LikelyHalf {
 /// one side of it. Nothing for two-dimensional cases, and where there are several such planes (a channel).
 std::optional<LikelyHalf> likely_half(const Field& field);
 
+/// What the loads advise where the surface looks cut across `axis` ("x", "y", "z"; `LoadsResult::cut_across`), in the
+/// words of their options. A front with a way of its own puts that in the place of these words.
+std::string half_model_advice(const std::string& axis);
+
 }  // namespace underbody::postproc

@@ -8,6 +8,7 @@
 #include "postproc/loads/body_zones.h"
 #include "postproc/loads/declared.h"
 #include "postproc/loads/fluid_side.h"
+#include "postproc/loads/half_model.h"
 #include "postproc/loads/loads_reference_point.h"
 #include "postproc/loads/lone_values.h"
 #include "postproc/loads/mirror_plane.h"
@@ -141,12 +142,13 @@ private:
         }
         constexpr double closed = 1e-3;
         if (result_.closure > closed) {
-            const std::string half = half_model_hint();
+            const std::string half = cut_across();
             throw InputError("zone",
                              "which walls are the body? " + others + ". The others (" + quoted(body) +
                                  ") are not closed either (closure " + core::format_number(result_.closure, 3) + ")",
                              place(),
-                             (half.empty() ? "" : half + "; ") + "name the body's zones: option 'zones " + list +
+                             (half.empty() ? "" : half_model_advice(half) + "; ") +
+                                 "name the body's zones: option 'zones " + list +
                                  "', or sum over every wall: option 'zones *'");
         }
         warn("left out of the sum: " + others + ". The loads are those on " + quoted(body) +
@@ -365,12 +367,12 @@ private:
                 shown({1000 * result_.force_per_reference_pascal[0], 1000 * result_.force_per_reference_pascal[1],
                        1000 * result_.force_per_reference_pascal[2]}) +
                 " N";
-            const std::string half = half_model_hint();
             const std::string one = opening_zone();
+            result_.cut_across = one.empty() ? cut_across() : "";
             warn(text + (!one.empty() ? "; it closes without zone '" + one +
                                             "' (a ground?): name the zones of the body (option 'zones')"
-                         : half.empty() ? ""
-                                        : "; " + half));
+                         : result_.cut_across.empty() ? ""
+                                                      : "; " + half_model_advice(result_.cut_across)));
         }
     }
 
@@ -463,7 +465,7 @@ private:
     }
 
     /// An opening that looks along one axis where the surface ends: a half model whose plane was not named.
-    [[nodiscard]] std::string half_model_hint() const {
+    [[nodiscard]] std::string cut_across() const {
         if (mirror_.axis >= 0 || revolved_) {
             return {};
         }
@@ -473,7 +475,7 @@ private:
             const bool ends_at_zero =
                 std::abs(extent_.lower[k]) < 1e-3 * size || std::abs(extent_.upper[k]) < 1e-3 * size;
             if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero && area_in_plane(k, 0) < 0.01 * norm(open)) {
-                return std::string("a half model? then option 'symmetry ") + "xyz"[k] + "'";
+                return {"xyz"[k]};
             }
         }
         return {};

@@ -120,8 +120,9 @@ struct LoadsResult {
     std::vector<LeftOutZone> left_out;  ///< a ground, a tunnel, an inlet, a wall that stands twice in the file; only
                                         ///< when no zones were named
     double area = 0;                    ///< m^2
-    double length = 0;   ///< m, of the body: as given among the references, else its extent along forward
-    double closure = 0;  ///< size of the summed area vector over the area: 0 for a closed surface
+    double length = 0;       ///< m, of the body: as given among the references, else its extent along forward
+    std::string cut_across;  ///< "x", "y", "z" where the surface ends as that of a half model does; else empty
+    double closure = 0;      ///< size of the summed area vector over the area: 0 for a closed surface
     Vector force_per_reference_pascal{};  ///< N/Pa: what 1 Pa added to every pressure would add to the force
     std::string depth;        ///< of a plane case: "per metre depth", "of the whole body of revolution"; else empty
     std::string values_from;  ///< "faces", "nodes", "cells", or "faces, nodes" when zones differ

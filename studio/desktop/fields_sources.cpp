@@ -1,5 +1,4 @@
 // Compare: which files are shown, how they are read, and what is done with one that cannot be.
-#include <QRegularExpression>
 #include <algorithm>
 
 #include "cases/case_loads.h"
@@ -180,19 +179,11 @@ postproc::LoadsOptions FieldsPanel::loads_options(const Source& source) const {
 
 namespace {
 
-/// What the loads say in the words of their options.
-const QRegularExpression& half_model_option() {
-    static const QRegularExpression option("a half model\\? then option 'symmetry ([xyz])'");
-    return option;
-}
-
 /// By its symmetry boundary, else by the opening of its surface, of which the loads warn.
 std::optional<postproc::LikelyHalf> half_of(const postproc::Field& field, const FieldLoads& sum) {
     auto half = postproc::likely_half(field);
-    for (const auto& found : sum.loads != nullptr ? sum.loads->problems : core::Problems{}) {
-        if (const auto match = half_model_option().match(qt(found.message)); !half && match.hasMatch()) {
-            half = postproc::LikelyHalf{match.captured(1).toStdString(), ""};
-        }
+    if (!half && sum.loads != nullptr && !sum.loads->cut_across.empty()) {
+        half = postproc::LikelyHalf{sum.loads->cut_across, ""};
     }
     return half;
 }
@@ -265,10 +256,10 @@ void FieldsPanel::warn_of_loads(std::size_t index) {
             continue;
         }
         QString said = qt(found.message);
-        if (const auto match = half_model_option().match(said); match.hasMatch()) {  // first what is to be done
-            said.remove(match.capturedStart(), match.capturedLength());
-            said = "half of a model? then 'Half model across " + match.captured(1) +
-                   ": take it so': " + said.remove(QRegularExpression("; $"));
+        const QString across = qt(cell.loads->cut_across);
+        const QString advice = qt("; " + postproc::half_model_advice(cell.loads->cut_across));
+        if (!across.isEmpty() && said.contains(advice)) {  // first what is to be done
+            said = "half of a model? then 'Half model across " + across + ": take it so': " + said.remove(advice);
         }
         found.message = said.toStdString();
         found.place.file = found.place.file.empty() ? cell.source.file.string() : found.place.file;

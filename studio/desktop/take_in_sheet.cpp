@@ -10,7 +10,6 @@
 #include <QListWidget>
 #include <QPointer>
 #include <QPushButton>
-#include <QRegularExpression>
 #include <QTableWidget>
 #include <algorithm>
 
@@ -22,6 +21,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/importers/importer.h"
+#include "postproc/loads/half_model.h"
 #include "postproc/loads/loads.h"
 #include "studio/desktop/natural_order.h"
 #include "studio/desktop/qt_text.h"
@@ -67,13 +67,14 @@ QString warnings_of(const postproc::Field& field, const fs::path& study, const s
         if (fs::exists(study / "study.toml")) {  // up, forward and symmetry are the study's
             options = cases::loads_options(cases::Study::open(study), {});
         }
-        for (const auto& problem : postproc::loads(field, options, progress).problems) {
+        const auto loads = postproc::loads(field, options, progress);
+        for (const auto& problem : loads.problems) {
             if (problem.severity == core::Problem::Severity::warning) {
                 text += "\n" + qt(name + ": " + problem.message);
             }
         }
-        static const QRegularExpression option("then option 'symmetry ([xyz])'");
-        text.replace(option, "then choose 'half, its plane across \\1' below");
+        text.replace(qt(postproc::half_model_advice(loads.cut_across)),
+                     "a half model? then choose 'half, its plane across " + qt(loads.cut_across) + "' below");
     } catch (const core::Error&) {  // said when it is computed, with what the sheet was told
     }
     return text;
