@@ -41,6 +41,7 @@ std::vector<RigKind> rig_kinds() {
             {"rig clean gusts", gusts, {}},
             {"rig clean rounded, outliers, dropouts", rough, {}},
             {"rig drift of the sensor", drift, {}},
+            {"rig single coloured 0.3x", coloured, {"catalogue"}, 0.3},
             {"rig single coloured 0.5x", coloured, {"catalogue"}, 0.5},
             {"rig single coloured 1x", coloured, {"catalogue"}, 1},
             {"rig single coloured 2x", coloured, {"catalogue"}, 2},

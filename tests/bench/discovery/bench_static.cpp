@@ -9,7 +9,7 @@ using namespace underbody;
 namespace {
 
 const char* const usage =
-    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|clean|unknown|pair|noise|rig] [--only "
+    "bench_discovery_static [--family glide|towed|jet|both] [--kind single|weak|clean|unknown|pair|noise|rig] [--only "
     "EFFECT] "
     "[--level X]\n"
     "                       [--seeds N] [--first-seed N] [--threads N] [--no-peers] [--markdown] [--verbose]\n"
@@ -76,6 +76,10 @@ int main(int argc, char** argv) {
         for (const double level : {1.0, 2.0}) {
             for (const std::string& name : bench::effects_of(family))
                 cases(level == 1 ? "single 1x" : "single 2x", {name}, "", level);
+        }
+        for (const double level : {0.4, 0.6, 0.8}) {  // verdicts that are not sure; only where asked for
+            for (const std::string& name : bench::effects_of(family))
+                if (o.kind == "weak") cases("weak", {name}, "", level);
         }
         for (const std::string& law : bench::unknown_laws(family)) cases("unknown", {"unknown"}, law, 3);
         for (int k = 0; k < 5; ++k) cases("clean", {}, "", 0, 101 * k);
