@@ -5,6 +5,7 @@
 #include <set>
 
 #include "cases/design_file.h"
+#include "cases/design_origin.h"
 #include "cases/volume_fault.h"
 #include "core/counted.h"
 #include "core/error.h"
@@ -33,6 +34,14 @@ const std::vector<double>& numbers_of(const core::Table& table, const SearchVari
                                "set the file aside, or vary what it holds");
     }
     return table.numbers(v.name);
+}
+
+std::vector<std::string> names_of(const core::Table& table) {
+    std::vector<std::string> names;
+    for (const core::Column& column : table.columns()) {
+        names.push_back(column.name);
+    }
+    return names;
 }
 
 std::vector<std::string> text_or(const core::Table& table, const std::string& name, const std::string& fallback) {
@@ -67,6 +76,23 @@ std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const core::Table& 
     return plan;
 }
 
+/// One of the files in shapes, which follow plan.csv and the shape of [design].
+void write_shape_file(const fs::path& file, const std::string& text) {
+    if (fs::exists(file) && core::read_file(file) == text) {
+        return;
+    }
+    fs::create_directories(file.parent_path());
+    try {
+        core::write_file(file, text);
+    } catch (const core::InputError&) {
+        throw core::InputError("exists",
+                               "the shape of this design is another one now (the shape of [design] or plan.csv has "
+                               "changed), and this file was copied or changed by hand",
+                               {file.string(), {}, {}, {}},
+                               "remove " + file.parent_path().string() + ": its files are made anew");
+    }
+}
+
 /// At the same place, equal but for the rounding of a file.
 bool same_place(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
     for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -79,7 +105,7 @@ bool same_place(const std::vector<SearchVariable>& variables, const DesignRun& a
 
 /// The same case.
 bool is_same(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
-    return a.design == b.design && a.fidelity == b.fidelity && same_place(variables, a, b);
+    return a.design == b.design && a.fidelity == b.fidelity && same_place(variables, a, b) && agree(a.origin, b.origin);
 }
 
 /// A run that stands twice counts once: of rows of one design the last that has loads, as where it is computed again;
@@ -91,7 +117,7 @@ void find_repeated(const DesignSpec& spec, const core::Table& table, std::vector
     for (std::size_t i = 1; i < runs.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             DesignRun &first = runs[j], &later = runs[i];
-            if (first.repeated || later.repeated || !same_place(variables, first, later) ||
+            if (!first.counts() || !later.counts() || !same_place(variables, first, later) ||
                 first.fidelity != later.fidelity) {
                 continue;
             }
@@ -117,53 +143,7 @@ void find_repeated(const DesignSpec& spec, const core::Table& table, std::vector
     }
 }
 
-/// What [design] computes of a condition, in SI, ascending.
-struct ComputedCondition {
-    const char* name;
-    std::string unit;
-    const std::vector<double>& values;
-};
-
-/// Rows at conditions that [design] does not compute (gaps in metres for millimetres, another speed) are learned all
-/// the same, and said.
-void note_other_conditions(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
-    const std::string jet_unit = spec.jet.any() ? spec.jet.unit() : std::string();
-    for (const ComputedCondition& c :
-         {ComputedCondition{"gap", "m", spec.gaps}, ComputedCondition{"pitch", "rad", spec.pitches},
-          ComputedCondition{"speed", "m/s", spec.speeds},
-          ComputedCondition{spec.jet.quantity.c_str(), jet_unit, spec.jet.values}}) {
-        if (c.values.empty() || table.find(c.name) == nullptr) {
-            continue;
-        }
-        const double low = c.values.front(), high = c.values.back();
-        const double rounding = 1e-6 * std::max(high - low, std::max(std::abs(low), std::abs(high)));
-        std::vector<double> other;
-        std::size_t first = 0;
-        const auto& at = table.numbers(c.name);
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            if (at[i] < low - rounding || at[i] > high + rounding) {
-                first = other.empty() ? i : first;
-                other.push_back(at[i]);
-            }
-        }
-        if (other.empty()) {
-            continue;
-        }
-        const auto shown = [&](double from, double to) {
-            return geometry::shown_value(from, c.unit, 6) +
-                   (from < to ? " to " + geometry::shown_value(to, c.unit, 6) : "");
-        };
-        const auto [least, most] = std::minmax_element(other.begin(), other.end());
-        notes.push_back({core::Problem::Severity::warning,
-                         std::string(c.name) + " is " + shown(*least, *most) + " in " +
-                             core::counted(other.size(), "row") + ", and [design] computes " + shown(low, high) +
-                             (low < high ? ": what is said there rests on rows that lie elsewhere"
-                                         : ": these rows are taken as if they were of it"),
-                         table.place(first, c.name)});
-    }
-}
-
-std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
+std::vector<DesignRun> rows_of(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
     const std::string& file = table.source;
     std::vector<DesignRun> runs(table.rows());
     const auto designs = text_or(table, "design", "-");
@@ -176,12 +156,10 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
         (void)level_of(spec, fidelities[i], file + " row " + std::to_string(i + 1));
     }
     for (const SearchVariable& v : spec.all_variables()) {
-        const auto& values = numbers_of(table, v);
+        const bool unsaid = !v.of_shape && table.find(v.name) == nullptr;  // had one value: the runs may say it
+        const auto& values = unsaid ? std::vector<double>(runs.size(), std::nan("")) : numbers_of(table, v);
         for (std::size_t i = 0; i < runs.size(); ++i) {
             runs[i].at.push_back(values[i]);
-            if (!std::isfinite(values[i])) {
-                throw core::InputError("missing", "a run without " + v.name, table.place(i, v.name));
-            }
         }
     }
     for (const std::string& q : spec.quantities) {
@@ -207,9 +185,21 @@ std::vector<DesignRun> read_results(const DesignSpec& spec, const core::Table& t
             }
         }
     }
-    note_other_conditions(spec, table, notes);
-    find_repeated(spec, table, runs, notes);
+    read_origins(table, spec, runs);
     return runs;
+}
+
+/// Throws where a run does not say where it stands, and no case in [design] folder does.
+void check_places(const DesignSpec& spec, const core::Table& table, const std::vector<DesignRun>& runs) {
+    const auto all = spec.all_variables();
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        for (std::size_t v = 0; v < all.size(); ++v) {
+            if (!std::isfinite(runs[i].at[v])) {
+                (void)numbers_of(table, all[v]);
+                throw core::InputError("missing", "a run without " + all[v].name, table.place(i, all[v].name));
+            }
+        }
+    }
 }
 
 /// Before anything is computed: what no surrogate can learn is not worth a run.
@@ -241,6 +231,7 @@ Design Design::open(const Study& study) {
     design.spec_ = *study.design;
     check_responses(design.spec_);
     check_count(design.spec_, study);
+    design.water_ = {study.reference.number("density"), !study.symmetry.empty()};
     design.base_ = geometry::read_shape(design.spec_.shape);
     const auto& varied = design.spec_.variables;
     if (design.spec_.jet.any() && !design.base_.nozzle &&
@@ -249,33 +240,45 @@ Design Design::open(const Study& study) {
                                {design.spec_.shape.string(), {}, {}, {}}, "[nozzle] with diameter = \"5 mm\"");
     }
     const fs::path plan = design.spec_.folder / "plan.csv", results = design.spec_.folder / "results.csv";
-    const auto names = [](const core::Table& table) {
-        std::vector<std::string> result;
-        for (const core::Column& column : table.columns()) {
-            result.push_back(column.name);
-        }
-        return result;
-    };
     if (fs::exists(plan)) {
-        design.plan_ = read_plan(design.spec_, design.plan_file_.read(plan, names(design.plan_table())));
+        design.plan_ = read_plan(design.spec_, design.plan_file_.read(plan, names_of(design.plan_table())));
     }
     if (fs::exists(results)) {
-        design.runs_ =
-            read_results(design.spec_, design.results_file_.read(results, names(design.results_table())), design.notes);
-    }
-    design.note_unknown_sigmas();
-    std::size_t unsettled = 0;
-    for (const DesignRun& run : design.runs_) {
-        unsettled += run.state == not_settled_state && !run.repeated ? 1 : 0;
-    }
-    if (unsettled > 0) {
-        design.notes.push_back(
-            {core::Problem::Severity::warning,
-             core::counted(unsettled, "run") +
-                 (unsettled == 1 ? " has not settled: it is left out" : " have not settled: they are left out"),
-             {results.string(), {}, {}, {}}});
+        design.read_results(results);
     }
     return design;
+}
+
+void Design::read_results(const fs::path& file) {
+    const core::Table table = results_file_.read(file, names_of(results_table()));
+    runs_ = rows_of(spec_, table, notes);
+    settle_origins(table, spec_, base_, water_, runs_, notes);
+    check_places(spec_, table, runs_);
+    note_other_conditions(spec_, table, notes);
+    find_repeated(spec_, table, runs_, notes);
+    note_unknown_sigmas();
+    note_unsettled();
+    note_silent_rows(spec_, file.string(), runs_, notes);
+}
+
+RunOrigin Design::origin_now(const std::vector<double>& at, const std::string& fidelity) const {
+    try {
+        return origin_of(spec_, base_, asked_for(spec_, base_, water_, at, fidelity));
+    } catch (const core::InputError&) {
+        return {};  // no such shape
+    }
+}
+
+void Design::note_unsettled() {
+    const auto unsettled = std::count_if(runs_.begin(), runs_.end(), [](const DesignRun& run) {
+        return run.state == not_settled_state && run.counts();
+    });
+    if (unsettled > 0) {
+        notes.push_back({core::Problem::Severity::warning,
+                         core::counted(unsettled, "run") + (unsettled == 1 ? " has not settled: it is left out"
+                                                                           : " have not settled: they are left out"),
+                         {(spec_.folder / "results.csv").string(), {}, {}, {}}});
+    }
 }
 
 std::size_t Design::make_plan(core::Progress& progress) {
@@ -330,19 +333,17 @@ void Design::write_plan() {
 bool Design::write_shapes() {
     bool refused = false;
     for (PlannedDesign& design : plan_) {
-        const fs::path file = spec_.folder / "shapes" / (design.name + ".toml");
+        std::string text;
         try {
             geometry::BodyShape shape = shape_at(design.at);
             shape.name = design.name;
-            const std::string text = geometry::write_shape(shape);
-            if (!fs::exists(file) || core::read_file(file) != text) {
-                fs::create_directories(file.parent_path());
-                core::write_file(file, text);
-            }
+            text = geometry::write_shape(shape);
         } catch (const core::InputError& error) {
             refused = refused || design.state == "planned";
             design.state = one_field(error.message() + (error.hint().empty() ? "" : "; " + error.hint()));
+            continue;
         }
+        write_shape_file(spec_.folder / "shapes" / (design.name + ".toml"), text);
     }
     return refused;
 }
@@ -350,7 +351,7 @@ bool Design::write_shapes() {
 DesignRun* Design::find(const DesignRun& run) {
     const auto variables = spec_.all_variables();
     const auto same = std::find_if(runs_.begin(), runs_.end(), [&](const DesignRun& known) {
-        return !known.repeated && is_same(variables, known, run);
+        return known.counts() && is_same(variables, known, run);
     });
     return same == runs_.end() ? nullptr : &*same;
 }
@@ -424,11 +425,12 @@ core::Table Design::plan_table() const {
 core::Table Design::results_table(std::size_t first) const {
     core::Table table;
     const std::span<const DesignRun> runs = std::span(runs_).subspan(first);
-    std::vector<std::string> designs, fidelities, states;
+    std::vector<std::string> designs, fidelities, states, shapes;
     for (const DesignRun& run : runs) {
         designs.push_back(run.design);
         fidelities.push_back(run.fidelity);
         states.push_back(run.state);
+        shapes.push_back(run.origin.shape);
     }
     table.add_text("design", designs);
     const auto all = spec_.all_variables();
@@ -439,6 +441,15 @@ core::Table Design::results_table(std::size_t first) const {
         }
         table.add_numbers(all[v].name, all[v].unit, values, geometry::shown_unit(all[v].unit));
     }
+    for (const auto& [name, unit] : origin_columns(spec_)) {
+        std::vector<double> values;
+        for (const DesignRun& run : runs) {
+            const auto known = run.origin.numbers.find(name);
+            values.push_back(known == run.origin.numbers.end() ? std::nan("") : known->second);
+        }
+        table.add_numbers(name, unit, values, geometry::shown_unit(unit));
+    }
+    table.add_text("shape_hash", shapes);
     table.add_text("fidelity", fidelities);
     for (const std::string& q : spec_.quantities) {
         std::vector<double> values, sigmas;

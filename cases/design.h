@@ -6,7 +6,9 @@
 //   cannot be.
 // - shapes/NAME.toml: the shape of each.
 // - runs/FIDELITY/: the cases of OpenFOAM.
-// - results.csv: one row a run, with design, varied numbers, conditions, fidelity, loads with NAME_sigma, state.
+// - results.csv: one row a run, with design, varied numbers, conditions, fidelity, water, hash of the shape that was
+// varied, loads with
+//   NAME_sigma, state.
 #pragma once
 
 #include <map>
@@ -34,6 +36,18 @@ struct PlannedDesign {
     std::string state;  ///< "planned", or why there is no such shape
 };
 
+/// Of what a run is beside its varied numbers. What is not known is not there.
+struct RunOrigin {
+    std::map<std::string, double> numbers;  ///< gap, pitch, speed, jet_flow, density, kinematic_viscosity; SI
+    std::string shape;                      ///< hash of the shape whose numbers were varied, without them
+};
+
+/// Of the study's, what the cases of a search are made with.
+struct DesignWater {
+    std::optional<double> density;  ///< kg/m^3
+    bool half = false;
+};
+
 /// Loads of one design at one condition.
 struct DesignRun {
     std::string design;
@@ -41,8 +55,11 @@ struct DesignRun {
     std::string fidelity;
     std::map<std::string, double> loads, sigmas;  ///< SI; by quantity; a sigma that nobody states is not there
     std::string state;                            ///< "solved", "not settled", or what failed
-    bool repeated = false;                        ///< another row is of the same case, and counts
-    [[nodiscard]] bool usable() const { return state == "solved" && !repeated; }
+    RunOrigin origin;
+    std::string other;      ///< what it is of that [design] does not ask for now: "speed: 1 m/s there, 0.5 m/s now"
+    bool repeated = false;  ///< another row is of the same case, and counts
+    [[nodiscard]] bool counts() const { return !repeated && other.empty(); }
+    [[nodiscard]] bool usable() const { return state == "solved" && counts(); }
 };
 
 class Design {
@@ -93,8 +110,13 @@ private:
     void keep(const DesignRun& run);
     void write_results();
     void note_unknown_sigmas();
+    void note_unsettled();
+    void read_results(const std::filesystem::path& file);
+    /// Of what a run at this place is that [design] asks for now.
+    [[nodiscard]] RunOrigin origin_now(const std::vector<double>& at, const std::string& fidelity) const;
     DesignSpec spec_;
     geometry::BodyShape base_;
+    DesignWater water_;
     std::vector<PlannedDesign> plan_;
     std::vector<DesignRun> runs_;
     DesignTable plan_file_, results_file_;

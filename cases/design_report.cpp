@@ -80,7 +80,7 @@ void add_facts(const Sources& from) {
     std::size_t solved = 0, runs = 0;
     for (const DesignRun& run : design.runs()) {
         solved += run.usable() ? 1 : 0;
-        runs += run.repeated ? 0 : 1;
+        runs += run.counts() ? 1 : 0;
     }
     page.facts({{std::to_string(design.spec().variables.size()), "numbers of the shape varied"},
                 {std::to_string(design.plan().size()), "designs"},

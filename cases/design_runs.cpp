@@ -121,10 +121,11 @@ void Design::solve(const Study& study, int jobs, core::Progress& progress) {
             const std::string variant = one.shape.stem().string();
             const auto planned =
                 std::find_if(plan_.begin(), plan_.end(), [&](const PlannedDesign& d) { return d.name == variant; });
-            DesignRun run{variant, planned->at, fidelity.name, {}, {}, ""};
+            DesignRun run{variant, planned->at, fidelity.name, {}, {}, "", {}, ""};
             for (std::size_t v = spec_.variables.size(); v < all.size(); ++v) {
                 run.at.push_back(one.conditions.number(all[v].name).value_or(0));
             }
+            run.origin = origin_now(run.at, run.fidelity);
             return run;
         };
         const auto ended = [&](const SweepCase& one, const std::string& failure) {

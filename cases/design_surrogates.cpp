@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cases/design.h"
+#include "core/counted.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -15,7 +16,8 @@ std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& prog
     if (std::none_of(runs_.begin(), runs_.end(), [](const DesignRun& run) { return run.usable(); })) {
         throw core::InputError("missing",
                                runs_.empty() ? "nothing has been computed yet"
-                                             : "of " + std::to_string(runs_.size()) + " runs none is solved",
+                                             : "of " + core::counted(runs_.size(), "run") +
+                                                   " none is solved of what [design] asks for now",
                                {(spec_.folder / "results.csv").string(), {}, {}, {}},
                                "'underbody design plan' and 'design run', or rows of another solver; 'state' says what "
                                "failed");
@@ -65,7 +67,7 @@ tables::DesignSearch::NextOptions Design::known() const {
     }
     std::map<std::vector<double>, bool> solved;
     for (const DesignRun& run : runs_) {
-        if (run.repeated) {
+        if (!run.counts()) {
             continue;
         }
         const std::vector<double> at(run.at.begin(),
@@ -78,7 +80,7 @@ tables::DesignSearch::NextOptions Design::known() const {
     }
     for (const PlannedDesign& design : plan_) {
         const bool run = std::any_of(runs_.begin(), runs_.end(), [&](const DesignRun& r) {
-            return r.design == design.name && r.fidelity == design.fidelity;
+            return r.other.empty() && r.design == design.name && r.fidelity == design.fidelity;
         });
         if (design.state == "planned" && !run) {
             options.planned.emplace_back(design.at, level_of(spec_, design.fidelity, design.name));

@@ -58,14 +58,18 @@ fs::path beside(const fs::path& folder, const char* ending) {
 }
 
 geometry::FlowOptions flow_of(const Study& study, const Conditions& conditions) {
-    const SweepSpec& spec = spec_of(study);
+    return flow_of(spec_of(study), study.reference.number("density"), !study.symmetry.empty(), conditions);
+}
+
+geometry::FlowOptions flow_of(const SweepSpec& spec, std::optional<double> density, bool half,
+                              const Conditions& conditions) {
     geometry::FlowOptions flow;
     flow.placement.gap = conditions.number("gap").value_or(0);
     flow.placement.pitch = conditions.number("pitch").value_or(0);
     flow.speed = conditions.number("speed").value_or(flow.speed);
-    flow.density = study.reference.number("density").value_or(flow.density);
+    flow.density = density.value_or(flow.density);
     flow.kinematic_viscosity = spec.kinematic_viscosity;
-    flow.half = !study.symmetry.empty();
+    flow.half = half;
     flow.jet_flow = spec.jet.flow(conditions);
     spec.mesh.put_into(flow);
     return flow;

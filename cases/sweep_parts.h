@@ -21,6 +21,9 @@ constexpr const char* failure_file = "failure.txt";         ///< in NAME.failed:
 std::filesystem::path beside(const std::filesystem::path& folder, const char* ending);
 
 geometry::FlowOptions flow_of(const Study& study, const Conditions& conditions);
+/// Of a sweep without its study: density of the water (none: the usual one), half a model or a whole one.
+geometry::FlowOptions flow_of(const SweepSpec& spec, std::optional<double> density, bool half,
+                              const Conditions& conditions);
 
 /// A solved case's marker; null when there is none.
 nlohmann::json read_marker(const std::filesystem::path& file);

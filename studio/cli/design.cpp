@@ -141,7 +141,7 @@ int run(Shell& shell, const Arguments& a) {
     json failed = json::array();
     std::string text;
     for (const auto& one : design.runs()) {
-        if (one.repeated) {
+        if (!one.counts()) {
             continue;
         }
         ++all;
