@@ -2,7 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "surrogates/tables/exports/export.h"
@@ -30,6 +34,20 @@ inline std::string export_file(const std::string& table, const std::string& form
         known.push_back(candidate.name);
     }
     throw core::InputError("name", "unknown export format '" + format + "'", {}, core::did_you_mean(format, known));
+}
+
+/// The files of a stored export by name: a line of JSON ([{"file", "size"}]), then their bytes. Valid as long as
+/// `value`.
+inline std::vector<std::pair<std::string, std::string_view>> exported_files(std::string_view value) {
+    std::vector<std::pair<std::string, std::string_view>> files;
+    const std::size_t line = value.find('\n');
+    std::size_t at = line + 1;
+    for (const auto& one : nlohmann::json::parse(value.substr(0, line))) {
+        const auto size = one.at("size").get<std::size_t>();
+        files.emplace_back(one.at("file").get<std::string>(), value.substr(at, size));
+        at += size;
+    }
+    return files;
 }
 
 }  // namespace underbody::cases

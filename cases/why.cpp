@@ -10,6 +10,7 @@
 #include <set>
 
 #include "cases/engine.h"
+#include "cases/export_files.h"
 #include "cases/why_names.h"
 #include "core/counted.h"
 #include "core/file.h"
@@ -151,12 +152,14 @@ private:
     bool from_id(const fs::path& file, const Head& head) {
         for (auto one = true_.begin(); one != true_.end(); ++one) {
             if (one->first == head.result && one->second.identity().starts_with(head.id)) {
+                compare_with_exports(file, head);
                 walk(*one);
                 return true;
             }
         }
         for (const auto& stored : stored_results()) {
             if (stored.kind == head.result.first && stored.identity().starts_with(head.id)) {
+                compare_with_exports(file, head);
                 const bool again = true_.contains(head.result);
                 way_.notes.push_back(
                     "the file holds an earlier result: " + shown(head.result) +
@@ -171,6 +174,32 @@ private:
                                    ", which the store of this study does not have",
                                {file.string(), {}, {}, {}},
                                "it is of another study, or so old that the store has forgotten it");
+    }
+
+    /// A head says of what a file was made, not that nobody changed the rest.
+    void compare_with_exports(const fs::path& file, const Head& head) {
+        const std::string bytes = core::read_file(file);
+        bool any = false;
+        for (const auto& stored : stored_results()) {
+            if (stored.kind != "export") {
+                continue;
+            }
+            for (const auto& source : about_of(stored).value("from", json::array())) {
+                if (Name{source.at("kind"), source.at("name")} == head.result && source.value("id", "") == head.id) {
+                    const std::string value = engine_.store()->value(stored.id).value_or("[]\n");
+                    const auto files = exported_files(value);
+                    if (std::any_of(files.begin(), files.end(), [&](const auto& one) { return one.second == bytes; })) {
+                        return;
+                    }
+                    any = true;
+                }
+            }
+        }
+        way_.notes.push_back(any ? "this file differs from what was exported: it was changed since, and what follows "
+                                   "is of " +
+                                       shown(head.result) + ", which its head names"
+                                 : "the store has no export of " + shown(head.result) + " " + head.id +
+                                       " any more: whether the file was changed since is not known");
     }
 
     using Hit = std::pair<Known::const_iterator, Fact>;
@@ -354,11 +383,16 @@ private:
         while (!next.empty()) {
             way_.origins.push_back(origin_of(next.front().first, next.front().second));
             const json about = next.front().second.id != 0 ? about_of(next.front().second) : json::object();
+            // What is true now has been held against what it rests on now: that may have been made anew, of equal
+            // numbers.
+            const bool is_true = way_.origins.back().state == StepState::unchanged;
             next.pop_front();
             for (const auto& source : about.value("from", json::array())) {
                 const Name name{source.at("kind"), source.at("name")};
                 if (seen.insert(name).second) {
-                    next.emplace_back(name, source_result(name, source.value("id", "")));
+                    const auto now = is_true ? true_.find(name) : true_.end();
+                    next.emplace_back(name,
+                                      now != true_.end() ? now->second : source_result(name, source.value("id", "")));
                 }
             }
         }

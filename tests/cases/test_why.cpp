@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
+#include "surrogates/tables/exports/export.h"
 #include "tests/support/small_study.h"
 
 namespace underbody::cases {
@@ -230,6 +231,50 @@ TEST_F(Why, AnExportedFileKnowsItsResultAlsoWhenItHasBeenMadeAnewSince) {
         ADD_FAILURE() << "it is of another study";
     } catch (const core::InputError& error) {
         EXPECT_THAT(error.message(), HasSubstr("which the store of this study does not have"));
+    }
+}
+
+TEST_F(Why, ACopyThatWasChangedIsNotTakenForWhatWasExported) {
+    const fs::path copy = scratch.path() / "copy.h";
+    std::string text = core::read_file(folder / "report" / "exports" / "lift.h");
+    core::write_file(copy, text);
+    EXPECT_TRUE(why(copy.string()).notes.empty());
+    const auto digit = text.find_last_of("123456789", text.rfind('}'));
+    text[digit] = text[digit] == '9' ? '8' : '9';
+    core::write_file(copy, text);
+    const Way way = why(copy.string());
+    EXPECT_EQ(way.origins.front().name, "lift");
+    ASSERT_EQ(way.notes.size(), 1U);
+    EXPECT_THAT(way.notes.front(), HasSubstr("this file differs from what was exported"));
+}
+
+/// Loads that were computed anew with equal forces moved nothing of what rests on them.
+TEST_F(Why, NothingHasChangedSinceWhereTheNumbersAreEqual) {
+    std::string text = core::read_file(folder / "study.toml");
+    core::write_file(folder / "study.toml", text + "[reference]\ndensity = \"998 kg/m^3\"\nspeed = \"0.5 m/s\"\n");
+    run();
+    core::write_file(folder / "study.toml", text + "[reference]\ndensity = \"1025 kg/m^3\"\nspeed = \"0.5 m/s\"\n");
+    run();
+    for (const auto& origin : why("region/map").origins) {
+        EXPECT_EQ(origin.state, StepState::unchanged) << origin.kind << " " << origin.name;
+        for (const auto& [label, value] : origin.options) {
+            EXPECT_TRUE(origin.kind != "loads" || label != "density" || value == "1025") << value;
+        }
+    }
+}
+
+TEST_F(Why, AFinishedStudyComputesNoExportAgain) {
+    std::string text = core::read_file(folder / "study.toml"), formats;
+    for (const auto& format : tables::export_formats()) {
+        formats += (formats.empty() ? "\"" : ", \"") + format.name + "\"";
+    }
+    const std::string before = "exports = [\"c\", \"csv\"]";
+    text.replace(text.find(before), before.size(), "exports = [" + formats + "]");
+    core::write_file(folder / "study.toml", text);
+    run();
+    const auto again = run_study(Study::open(folder), options());
+    for (const auto& step : again.steps) {
+        EXPECT_EQ(step.state, StepState::unchanged) << step.kind << " " << step.name;
     }
 }
 

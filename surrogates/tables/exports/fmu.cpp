@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/text.h"
 #include "surrogates/tables/exports/export_grid.h"
 #include "surrogates/tables/exports/fmu_package.h"
@@ -446,6 +447,7 @@ void export_fmu(const ExportGrid& asked, const std::filesystem::path& path, Expo
     ExportGrid grid = asked;
     grid.single_precision = false;  // the numbers of FMI are doubles
     core::TemporaryFolder folder("underbody-fmu");
+    const core::RecordInputs own(folder.path());  // nothing there is an input
     ExportResult ignored;
     export_c(grid, folder.path() / "table.h", ignored);
     const std::string header = core::read_file(folder.path() / "table.h");

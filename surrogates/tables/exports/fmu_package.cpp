@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include "core/file.h"
+#include "core/inputs.h"
 #include "core/hash.h"
 #include "surrogates/tables/exports/zip.h"
 
@@ -48,6 +49,7 @@ std::string fmu_guid(const std::string& content) {
 void write_fmu(const std::filesystem::path& path, const std::string& name, const std::string& description,
                const FmuSources& sources, core::Problems& remarks) {
     core::TemporaryFolder folder("underbody-fmu");
+    const core::RecordInputs own(folder.path());  // nothing there is an input
     for (const auto& [file, text] : sources) {
         core::write_file(folder.path() / file, text);
     }
