@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/code_version.h"
+#include "cases/doubts.h"
 #include "cases/engine.h"
 #include "cases/excused.h"
 #include "cases/percent.h"
@@ -331,6 +332,9 @@ private:
                 page_.table({"end of the motion", "kind", "share of the starts"}, rows,
                             std::to_string(spec.columns) + " x " + std::to_string(spec.rows) + " starts, " +
                                 core::format_number(spec.duration, 3) + " s of motion each.");
+                for (const auto& doubt : doubts_of_model(engine_.study, engine_.results, spec)) {
+                    page_.warning(doubt);
+                }
                 remarks(region->remarks);
                 page_.link("models/" + spec.name + "/model.toml",
                            "The model as a file for underbody simulate and region");
@@ -501,6 +505,9 @@ private:
         page_.section("Loads of all cases");
         const ReportTable shown_loads = loads_of_all_cases(engine_.study, engine_.results);
         page_.folded_table(core::counted(shown_loads.rows.size(), "case"), shown_loads.header, shown_loads.rows);
+        if (!shown_loads.caption.empty()) {
+            page_.paragraph(shown_loads.caption);
+        }
         page_.paragraph(
             "Lift positive up, drag against the motion, pitch moment nose up about the centre of the base. "
             "Errors are those that the force tables take for the case (mesh study and stated error); closure is the "

@@ -126,6 +126,33 @@ void add_quality(const core::Table& loads, std::size_t row, std::vector<std::str
 
 }  // namespace
 
+namespace {
+
+/// Which error the list shows where tables of one quantity take different ones for one case; empty: they do not.
+std::string which_error(const Study& study, const StudyResults& results, const std::string& quantity) {
+    std::map<std::string, double> first;  // by case
+    std::string names;
+    bool differ = false;
+    for (const auto& spec : study.tables) {
+        const TableResult* table = spec.quantity == quantity ? find_result(results.tables, spec.name) : nullptr;
+        const core::Column* sigma = table == nullptr ? nullptr : table->points.find(quantity + "_sigma");
+        if (sigma == nullptr) {
+            continue;
+        }
+        names += (names.empty() ? "'" : ", '") + spec.name + "'";
+        for (std::size_t row = 0; row < table->points.rows(); ++row) {
+            const double error = sigma->numbers[row];
+            const auto [known, fresh] = first.emplace(table->points.text("case")[row], error);
+            differ = differ || (!fresh && std::abs(known->second - error) > 1e-6 * std::abs(error));
+        }
+    }
+    return differ ? "The error of " + quantity + " is the largest that the tables " + names +
+                        " take for the case; each has its own. "
+                  : "";
+}
+
+}  // namespace
+
 ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) {
     const core::Table& loads = results.loads;
     const std::vector<Shown> conditions = condition_columns(loads);
@@ -138,6 +165,7 @@ ReportTable loads_of_all_cases(const Study& study, const StudyResults& results) 
     for (const Shown& force : {Shown{"lift_force", "N", "N", "lift (N)"}, Shown{"drag_force", "N", "N", "drag (N)"},
                                Shown{"pitch_moment", "N m", "mN m", "pitch moment (mN m)"}}) {
         forces.push_back({force, load_errors(study, results, force.name)});
+        table.caption += which_error(study, results, force.name);
         table.header.push_back(force.title);
         if (!forces.back().errors.empty()) {
             table.header.push_back("± (" + force.to + ")");

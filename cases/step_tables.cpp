@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cases/doubts.h"
 #include "cases/engine.h"
 #include "cases/export_files.h"
 #include "core/counted.h"
@@ -107,7 +108,7 @@ std::string compute_table(const TableSpec& spec, const core::Table& points, cons
 
 using SharedTable = Shared<tables::ForceTable>;
 
-/// The files of an export as one value: a line of JSON ([{"file", "size"}]), then their bytes.
+/// The files of an export as one value (exported_files).
 std::string packed(const std::vector<fs::path>& files) {
     nlohmann::json head = nlohmann::json::array();
     std::string bytes;
@@ -121,16 +122,12 @@ std::string packed(const std::vector<fs::path>& files) {
 
 /// Their names; with `folder`, each is written there.
 std::vector<std::string> unpacked(const std::string& value, const std::optional<fs::path>& folder) {
-    const std::size_t line = value.find('\n');
-    std::size_t at = line + 1;
     std::vector<std::string> names;
-    for (const auto& one : nlohmann::json::parse(value.substr(0, line))) {
-        names.push_back(one.at("file").get<std::string>());
-        const auto size = one.at("size").get<std::size_t>();
+    for (const auto& [name, bytes] : exported_files(value)) {
+        names.push_back(name);
         if (folder) {
-            Engine::write_if_changed(*folder / names.back(), value.substr(at, size));
+            Engine::write_if_changed(*folder / name, std::string(bytes));
         }
-        at += size;
     }
     return names;
 }
@@ -177,7 +174,10 @@ void run_table(Engine& engine, const TableSpec& spec) {
     }
     SharedTable table(engine.states(), [&] { return fitted(spec, points); });
     Key key = table_key("table", spec, points);
-    const auto mixed = mixed_conditions(spec, engine.results);
+    auto mixed = mixed_conditions(spec, engine.results);
+    for (auto& doubt : doubts_of_mesh(spec, engine.results)) {
+        mixed.push_back(std::move(doubt));
+    }
     for (const auto& remark : mixed) {
         key.add("remark", remark);
     }

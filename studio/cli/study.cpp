@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "cases/doubts.h"
 #include "cases/excused.h"
 #include "cases/percent.h"
 #include "core/counted.h"
@@ -90,6 +91,23 @@ std::string in_unit(double value, const std::string& from, const std::string& to
     return std::isfinite(value) ? core::format_number(core::convert(value, from, to), digits) : "-";
 }
 
+/// What the warnings of the loads do not hold: checks that failed, maps of models that the runs find incomplete.
+void warn_of_checks(Shell& shell, const cases::Study& study, const cases::StudyResults& results) {
+    for (const auto& check : results.verifications) {
+        if (check.failed > 0) {
+            shell.show_warning("check '" + check.name +
+                               "': " + core::counted_of(check.failed, check.values, "value", "lies", "lie") +
+                               " beyond its tolerance, the worst " + core::format_number(100 * check.worst, 3) +
+                               " % (" + check.worst_case + ")");
+        }
+    }
+    for (const auto& region : study.regions) {
+        for (const auto& doubt : cases::doubts_of_model(study, results, region)) {
+            shell.show_warning("map '" + region.name + "': " + doubt);
+        }
+    }
+}
+
 /// What was done and what went wrong; the exit code.
 int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& results) {
     for (const auto& note : results.notes) {
@@ -103,6 +121,7 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
         }
     }
     if (shell.json) {
+        warn_of_checks(shell, study, results);
         nlohmann::json json;
         to_json(json, results);
         json["notes"] = json_of_notes(study, results.notes);
@@ -112,17 +131,10 @@ int tell(Shell& shell, const cases::Study& study, const cases::StudyResults& res
     }
     show_notes(shell, study);
     print_warnings(shell, results);
+    warn_of_checks(shell, study, results);
     if (const auto names = tables::not_settled(results.loads); !names.empty()) {
         shell.print(core::counted_of(names.size(), results.loads.rows(), "solution", "has", "have") + " not settled" +
                     (names.size() == 1 ? ", '" : ", the first '") + names.front() + "'");
-    }
-    for (const auto& check : results.verifications) {
-        if (check.failed > 0) {
-            shell.print("check '" + check.name +
-                        "': " + core::counted_of(check.failed, check.values, "value", "lies", "lie") +
-                        " beyond its tolerance, the worst " + core::format_number(100 * check.worst, 3) + " % (" +
-                        check.worst_case + ")");
-        }
     }
     shell.print(core::counted(results.computed, "result") + " computed, " + std::to_string(results.reused) +
                 " unchanged, " + std::to_string(results.failed) + " failed");

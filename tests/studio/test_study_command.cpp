@@ -219,6 +219,10 @@ TEST_F(StudyCommand, VerifyEndsWithFourWhenTheSolverDisagrees) {
     const ProgramRun result = run_underbody({"study", "verify", study.string()});
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.output, HasSubstr("cube-h1"));
+    const ProgramRun whole = run_underbody({"study", "run", study.string(), "--no-pictures"});
+    EXPECT_THAT(whole.output, HasSubstr("check 'solver': 1 of 2 values lies beyond its tolerance"));
+    const json warnings = json::parse(run().output).at("warnings");
+    EXPECT_THAT(warnings.dump(), HasSubstr("check 'solver': 1 of 2 values lies beyond its tolerance"));
 }
 
 TEST_F(StudyCommand, AReadOnlyFolderIsToldWithTheWayOut) {

@@ -1,0 +1,46 @@
+#include "cases/doubts.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/text.h"
+#include "core/units.h"
+#include "postproc/loads/uncertainty.h"
+
+namespace underbody::cases {
+
+std::vector<std::string> doubts_of_model(const Study& study, const StudyResults& results, const RegionSpec& region) {
+    std::vector<std::string> doubts;
+    for (const auto& spec : study.measurements) {
+        const std::string* document = results.document("discovery/" + spec.name);
+        if (document == nullptr || spec.model.lexically_normal() != region.model.lexically_normal()) {
+            continue;
+        }
+        std::string lacks;
+        const nlohmann::json found = nlohmann::json::parse(*document);
+        for (const auto& effect : found.value("effects", nlohmann::json::array())) {
+            lacks += (lacks.empty() ? "" : ", ") + effect.value("name", "");
+        }
+        if (!lacks.empty()) {
+            doubts.push_back("The measured runs '" + spec.name + "' find this model incomplete: it lacks " + lacks +
+                             ". The map is of the model as declared, without that.");
+        }
+    }
+    return doubts;
+}
+
+std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results) {
+    const MeshResult* mesh = find_result(results.meshes, table.mesh_uncertainty);
+    const auto* found = mesh == nullptr ? nullptr : mesh->find(table.quantity);
+    if (found == nullptr || found->verdict != postproc::to_string(postproc::MeshVerdict::diverging)) {
+        return {};
+    }
+    const auto* quantity = core::find_quantity(table.quantity);
+    return {
+        "Its error of " + core::format_number(found->standard_uncertainty, 2) + " " +
+        (quantity == nullptr ? "" : quantity->unit) + " is of the mesh study '" + mesh->name +
+        "', whose values are diverging: they move more from mesh to mesh the finer it is, so that their range is no "
+        "bound of the error."};
+}
+
+}  // namespace underbody::cases

@@ -1,0 +1,17 @@
+// What a result does not know of itself: doubts that other results of the same study cast on it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cases/study.h"
+
+namespace underbody::cases {
+
+/// Sentences for a map of a model that a [[measurement]] of the study finds incomplete.
+std::vector<std::string> doubts_of_model(const Study& study, const StudyResults& results, const RegionSpec& region);
+
+/// Sentences for a table whose error is of a mesh study that does not converge.
+std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results);
+
+}  // namespace underbody::cases
