@@ -161,6 +161,11 @@ void check_words(const NewTable& table) {
             static_cast<void>(core::parse_in(text, unit));
         }
     }
+    if (!table.net_weight.empty() && table.quantity != "lift_force" && core::find_quantity(table.quantity) != nullptr) {
+        throw core::UsageError("quantity",
+                               "a net weight is balanced by the lift, and this is a table of " + table.quantity, {},
+                               "a table of lift_force, or no net weight");
+    }
     std::vector<std::string> known;
     for (const auto& format : tables::export_formats()) {
         known.push_back(format.name);

@@ -339,7 +339,8 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
         shell.print("no equilibrium: the net force is " + core::format_number(found.force_at_lower, 4) + " N at " +
                     shown(table, found.axis, found.axis_unit, found.lower) + " and " +
                     core::format_number(found.force_at_upper, 4) + " N at " +
-                    shown(table, found.axis, found.axis_unit, found.upper));
+                    shown(table, found.axis, found.axis_unit, found.upper) +
+                    (is_model || !command.weight.empty() ? "" : "; a net weight of 0 N was taken (--weight)"));
     }
     nlohmann::json of_model = nlohmann::json::object();
     of_table.describe(of_model);

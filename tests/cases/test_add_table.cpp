@@ -78,6 +78,10 @@ TEST_F(AddedTables, SayWhyTheyCannotBeMade) {
                 HasSubstr("did you mean 'lift_force'?"));
     EXPECT_THAT(refusal({.where = conditions_from("variant=ellipse"), .net_weight = "3mm"}),
                 HasSubstr("another dimension than 'N'"));
+    EXPECT_THAT(
+        refusal(
+            {.quantity = "pitch_moment", .where = conditions_from("variant=ellipse,pitch=0deg"), .net_weight = "0.3N"}),
+        HasSubstr("a net weight is balanced by the lift, and this is a table of pitch_moment"));
     EXPECT_THAT(refusal({.where = conditions_from("variant=ellipse"), .exports = {"cvs"}}),
                 HasSubstr("did you mean 'csv'?"));
 }

@@ -45,6 +45,17 @@ TEST(TableCommand, GivesValuesEquilibriaAndTheirJson) {
     EXPECT_THAT(run.output, HasSubstr(" mm"));
 }
 
+TEST(TableCommand, AWeightThatNobodyGaveIsSaidWhereNothingBalances) {
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv", lift);
+    EXPECT_THAT(run_underbody({"table", "equilibria", "lift.csv"}, folder.path()).output,
+                HasSubstr("no equilibrium: the net force is 0.66 N"));
+    EXPECT_THAT(run_underbody({"table", "equilibria", "lift.csv"}, folder.path()).output,
+                HasSubstr("; a net weight of 0 N was taken (--weight)"));
+    EXPECT_THAT(run_underbody({"table", "equilibria", "lift.csv", "--weight", "3 N"}, folder.path()).output,
+                testing::Not(HasSubstr("was taken")));
+}
+
 TEST(TableCommand, PointsWithoutErrorsAreSaidToBeExactWhereAnErrorIsRead) {
     core::TemporaryFolder folder;
     const std::string said = "points of lift_force state no errors and are taken as exact";
