@@ -1,5 +1,7 @@
 #include "core/table_rows.h"
 
+#include <cmath>
+
 #include "core/text.h"
 
 namespace underbody::core {
@@ -48,7 +50,9 @@ std::vector<std::size_t> rows_within(const Table& table, const std::vector<Named
         const Column& column = column_named(table, range.name);
         std::erase_if(rows, [&](std::size_t row) {
             const double value = column.numbers[row];
-            return !(value >= range.lower && value <= range.upper);
+            // A value that was converted from another unit may differ in its last digit.
+            return !(value >= range.lower - 1e-12 * std::abs(range.lower) &&
+                     value <= range.upper + 1e-12 * std::abs(range.upper));
         });
     }
     return rows;

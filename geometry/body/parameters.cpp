@@ -121,9 +121,13 @@ void set_parameter(BodyShape& shape, const std::string& name, const std::string&
         protrusion(shape).profile = static_cast<ProtrusionProfile>(choice({"rounded", "sharp"}));
         return;
     }
+    set_parameter(shape, name, core::parse_in(text, parameter_unit(name, {})));
+}
+
+void set_parameter(BodyShape& shape, const std::string& name, double value) {
     for (const Parameter& p : numbers()) {
         if (p.name.name == name) {
-            p.set(shape, core::parse_in(text, p.name.unit));
+            p.set(shape, value);
             return;
         }
     }

@@ -24,6 +24,8 @@ namespace underbody::geometry {
 /// A parameter of [protrusion], [nozzle] or [tail_plate] brings that part into being. Does not check the shape.
 /// Throws core::InputError: unknown name (with the nearest), a value that does not parse or has another dimension.
 void set_parameter(BodyShape& shape, const std::string& name, const std::string& text);
+/// A number in SI; throws for words and unknown names.
+void set_parameter(BodyShape& shape, const std::string& name, double value);
 /// SI value of a number parameter; throws for words.
 double parameter(const BodyShape& shape, const std::string& name);
 /// False for a parameter of a part that the shape has not ("protrusion.height" of a body without one).

@@ -12,6 +12,7 @@
 #include <QSplitter>
 #include <QTableWidget>
 #include <QTimer>
+#include <QToolButton>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -119,7 +120,7 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     parameter_column_->setContentsMargins(0, 0, 6, 0);
     parameter_column_->setSpacing(1);
     area->setWidget(inside);
-    side.addWidget(area, 3);
+    side.addWidget(area, 1);
     make_rows();
     auto* buttons = new QHBoxLayout;
     auto* keep = new QPushButton("&Keep …");
@@ -154,8 +155,8 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     for (const int whole : {0, 1}) {  // in bold, too
         card_->horizontalHeader()->setSectionResizeMode(whole, QHeaderView::ResizeToContents);
     }
-    card_->setMinimumHeight(276);  // all of its rows
-    side.addWidget(card_, 2);
+    card_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // as high as its rows: show_card
+    side.addWidget(card_);
     state_label_ = new QLabel;
     state_label_->setWordWrap(true);
     side.addWidget(state_label_);
@@ -180,12 +181,80 @@ void DesignPanel::connect_row(ParameterRow* row, const std::string& verb, const 
     });
 }
 
+QVBoxLayout& DesignPanel::add_group(const std::string& part) {
+    auto* head = new QToolButton;
+    head->setObjectName("fold " + qt(part));
+    head->setAccessibleName("Fold " + qt(part).replace('_', ' '));
+    head->setToolTip("Folds these numbers away, or shows them");
+    head->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    head->setAutoRaise(true);
+    QFont bold = head->font();
+    bold.setBold(true);
+    head->setFont(bold);
+    auto* rows = new QWidget;
+    auto* column = new QVBoxLayout(rows);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(1);
+    parameter_column_->addWidget(head);
+    parameter_column_->addWidget(rows);
+    groups_.push_back({part, head, rows, {}});
+    connect(head, &QToolButton::clicked, this, [this, at = groups_.size() - 1] {
+        groups_[at].chosen = groups_[at].rows->isHidden();
+        show_groups();
+        ask_ranges();
+    });
+    return *column;
+}
+
+void DesignPanel::show_groups() {
+    for (const auto& group : groups_) {
+        const bool there = group.part == "operation" || geometry::has_part_of(shape_, group.part + ".");
+        const bool open = group.chosen.value_or(there);
+        group.head->setText(qt(group.part).replace('_', ' ') + (there ? "" : " (none)"));
+        group.head->setArrowType(open ? Qt::DownArrow : Qt::RightArrow);
+        group.rows->setVisible(open);
+    }
+}
+
+std::set<std::string> DesignPanel::open_groups() const {
+    std::set<std::string> parts;
+    for (const auto& group : groups_) {
+        if (!group.rows->isHidden()) {
+            parts.insert(group.part);
+        }
+    }
+    return parts;
+}
+
+/// What is chosen of a part by a word: the outline of the base, the profile of the protrusion.
+void DesignPanel::add_words(const std::string& part, QVBoxLayout& column) {
+    for (const auto& word : geometry::parameter_names()) {
+        if (!word.unit.empty() || !word.name.starts_with(part + ".")) {
+            continue;
+        }
+        auto* box = new QComboBox;
+        box->setAccessibleName(qt(word.name));
+        if (word.name == "body.base") {
+            for (const auto& base : geometry::base_names()) {
+                box->addItem(qt(base));
+            }
+        } else {
+            box->addItems({"rounded", "sharp"});
+        }
+        connect(box, QOverload<int>::of(&QComboBox::activated), this, [this, box, name = word.name] {
+            desk_.act({"set", name + "=" + box->currentText().toStdString()});
+        });
+        auto* line = new QHBoxLayout;
+        line->addWidget(new QLabel(qt(word.name.substr(word.name.find('.') + 1))));
+        line->addWidget(box, 1);
+        column.addLayout(line);
+        words_.emplace_back(word.name, box);
+    }
+}
+
 void DesignPanel::make_rows() {
     std::string part;
-    const auto heading = [&](const std::string& text) {
-        auto* label = new QLabel("<b>" + qt(text).replace('_', ' ') + "</b>");
-        parameter_column_->addWidget(label);
-    };
+    QVBoxLayout* column = nullptr;
     for (const auto& parameter : geometry::parameter_names()) {
         const std::string of = parameter.name.substr(0, parameter.name.find('.'));
         if (parameter.unit.empty()) {
@@ -193,60 +262,44 @@ void DesignPanel::make_rows() {
         }
         if (of != part) {
             part = of;
-            heading(part);
-            for (const auto& word : geometry::parameter_names()) {
-                if (!word.unit.empty() || !word.name.starts_with(part + ".")) {
-                    continue;
-                }
-                auto* box = new QComboBox;
-                box->setAccessibleName(qt(word.name));
-                if (word.name == "body.base") {
-                    for (const auto& base : geometry::base_names()) {
-                        box->addItem(qt(base));
-                    }
-                } else {
-                    box->addItems({"rounded", "sharp"});
-                }
-                connect(box, QOverload<int>::of(&QComboBox::activated), this, [this, box, name = word.name] {
-                    desk_.act({"set", name + "=" + box->currentText().toStdString()});
-                });
-                auto* line = new QHBoxLayout;
-                line->addWidget(new QLabel(qt(word.name.substr(word.name.find('.') + 1))));
-                line->addWidget(box, 1);
-                parameter_column_->addLayout(line);
-                words_.emplace_back(word.name, box);
-            }
+            column = &add_group(part);
+            add_words(part, *column);
         }
         auto* row =
             new ParameterRow(qt(parameter.name), {}, parameter.unit, std::string(core::told_unit(parameter.unit)));
-        parameter_column_->addWidget(row);
+        column->addWidget(row);
         rows_.emplace_back(parameter.name, row);
         connect_row(row, "set", parameter.name, parameter.unit);
         connect(row, &ParameterRow::reset, this, [this, name = parameter.name] { desk_.act({"reset", name}); });
     }
-    heading("operation");
+    column = &add_group("operation");
     gap_ = new ParameterRow("gap", "under the centre of the base", "m", "mm");
     pitch_ = new ParameterRow("pitch", "nose up positive", "rad", "deg");
     speed_ = new ParameterRow("speed", "through the water, where the surrogate knows several", "m/s", "m/s");
     for (const auto& [row, unit] : {std::pair{gap_, "m"}, {pitch_, "rad"}, {speed_, "m/s"}}) {
-        parameter_column_->addWidget(row);
+        column->addWidget(row);
         connect_row(row, "operation", row->objectName().toStdString(), unit);
     }
     speed_->hide();
     parameter_column_->addStretch(1);
 }
 
-/// The library decides what a number may be; asking it about all takes a while, so a job does.
+/// The library decides what a number may be; asking it about all that are seen takes a while, so a job does, when the
+/// hand rests. What is known of a shape before stays until then.
 void DesignPanel::ask_ranges() {
-    const std::string key = geometry::shape_hash(shape_);
+    const auto parts = open_groups();
+    std::string key = geometry::shape_hash(shape_);
+    for (const auto& part : parts) {
+        key += " " + part;
+    }
     if (ranges_of_ == key) {
         return;
     }
     ranges_of_ = key;
     jobs_.start(
         "design ranges", "limits",
-        [this, shape = shape_, key](core::Progress& progress) {
-            const auto ranges = allowed_ranges(shape, progress);
+        [this, shape = shape_, parts, key](core::Progress& progress) {
+            const auto ranges = allowed_ranges(shape, parts, progress);
             return [this, ranges, key] {
                 if (key == ranges_of_) {
                     ranges_ = ranges;
@@ -332,10 +385,13 @@ void DesignPanel::draw_again(bool fresh) {
         section_->show_text(qt(error.what()));
         return;
     }
-    if (name != name_ || fresh) {
+    show_groups();
+    if (name != name_) {
         ranges_.clear();
         ranges_of_.clear();
         name_ = name;
+    }
+    if (ranges_.empty() || fresh) {  // results that come in while a study is computed change no limit
         ask_ranges();
     }
     fill_rows(name, shape_);

@@ -3,6 +3,9 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
+#include <set>
+#include <string>
 
 #include "cases/known_lift.h"
 #include "cases/study.h"
@@ -14,6 +17,7 @@ class QLabel;
 class QSplitter;
 class QTableWidget;
 class QTimer;
+class QToolButton;
 class QVBoxLayout;
 
 namespace underbody::dynamics {
@@ -71,6 +75,11 @@ private:
     void make_scene();
     void fill_rows(const std::string& name, const geometry::BodyShape& shape);
     void make_rows();
+    /// Its rows are folded away where the shape has no such part, until somebody unfolds them.
+    QVBoxLayout& add_group(const std::string& part);
+    void add_words(const std::string& part, QVBoxLayout& column);
+    void show_groups();
+    [[nodiscard]] std::set<std::string> open_groups() const;
     void ask_ranges();
     void connect_row(ParameterRow* row, const std::string& verb, const std::string& key, const std::string& unit);
     void ask_move();
@@ -133,6 +142,13 @@ private:
     bool fitted_view_ = false;  ///< to a whole body
     bool turned_ = false;       ///< by hand: the camera is not fitted any more
     QComboBox* choice_ = nullptr;
+    struct Group {
+        std::string part;
+        QToolButton* head = nullptr;
+        QWidget* rows = nullptr;
+        std::optional<bool> chosen;  ///< by hand
+    };
+    std::vector<Group> groups_;
     std::vector<std::pair<std::string, ParameterRow*>> rows_;
     std::vector<std::pair<std::string, QComboBox*>> words_;
     ParameterRow* gap_ = nullptr;

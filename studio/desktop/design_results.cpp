@@ -1,5 +1,6 @@
 // Design: the card of results now and before, and what is known of the lift.
 #include <QBoxLayout>
+#include <QHeaderView>
 #include <QLabel>
 #include <QTableWidget>
 #include <cmath>
@@ -117,6 +118,8 @@ void DesignPanel::show_card() {
             item->setFont(font);
         }
     }
+    const auto* rows = card_->verticalHeader();
+    card_->setFixedHeight(card_->horizontalHeader()->sizeHint().height() + rows->length() + 2 * card_->frameWidth());
     if (!shown_) {
         return;
     }

@@ -32,6 +32,17 @@ Desk::Desk(Jobs& jobs, const fs::path& log_folder, QObject* parent)
 
 Desk::~Desk() = default;
 
+namespace {
+/// What was asked for, as the history would name it.
+QString title_of(const Words& words) {
+    try {
+        return qt(name_of(words));
+    } catch (const core::Error&) {  // no such verb, or words that it does not know
+        return words.empty() ? QString() : qt(words.front());
+    }
+}
+}  // namespace
+
 bool Desk::act(const Words& words, const QString& gesture) {
     try {
         if (history_.act(words, *session_, gesture.toStdString())) {
@@ -40,7 +51,7 @@ bool Desk::act(const Words& words, const QString& gesture) {
         }
         return true;
     } catch (...) {
-        Q_EMIT refused(words.empty() ? QString() : qt(words.front()), std::current_exception());
+        Q_EMIT refused(title_of(words), std::current_exception());
         return false;
     }
 }
@@ -230,33 +241,65 @@ void Desk::open_study(const fs::path& folder) { open(folder, false); }
 
 void Desk::open_and_run(const fs::path& folder, const std::vector<Words>& then) { open(folder, true, then); }
 
+namespace {
+/// A session that was kept, of this very study.
+bool fits(const fs::path& kept, const fs::path& study) {
+    try {
+        return fs::exists(kept) && fs::path(read_session(kept).state.study) == study;
+    } catch (const core::Error&) {  // of a later version, or damaged: the study is opened as it is
+        return false;
+    }
+}
+}  // namespace
+
+void Desk::keep_session() const {
+    if (!log_ || state().study.empty()) {
+        return;
+    }
+    try {
+        write_session(state(), kept_session(state().study));
+    } catch (const std::exception&) {  // a study that is only read
+    }
+}
+
 void Desk::open(const fs::path& folder, bool run, const std::vector<Words>& then) {
     const QString name = qt(folder.string());
-    jobs_.start("open", "opening " + name, [this, folder, name, run, then, files = state().files](core::Progress&) {
-        auto session = open_session(folder, files);
-        return [this, session, name, run, then] {
-            take_session(session);
-            if (!run || state().study != session->folder.string()) {  // what the open one shows is kept
-                act({"open", session->folder.string()});
-                if (session->shapes.empty() && !session->study.cases.empty() && state().workspace == "design") {
-                    act({"workspace", "compare"});  // there is no shape to design
+    const bool ask_kept = log_ && !run && state().files.empty();
+    jobs_.start(
+        "open", "opening " + name, [this, folder, name, run, then, ask_kept, files = state().files](core::Progress&) {
+            auto session = open_session(folder, files);
+            const fs::path kept = kept_session(session->folder);
+            const bool has_kept = ask_kept && fits(kept, session->folder);
+            return [this, session, name, run, then, kept, has_kept] {
+                const bool other = state().study != session->folder.string();
+                if (other) {
+                    keep_session();
                 }
-            }
-            for (const auto& words : then) {
-                act(words);
-            }
-            Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
-            if (run) {
-                run_study();
-            } else if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
-                Q_EMIT noted(session->results.changed > 0
-                                 ? "What was computed of this study rests on other files, options or another version "
-                                   "of the program: Study > Compute what changed (Ctrl+R) makes it anew."
-                                 : "Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
-            }
-            Q_EMIT opened(qt(session->folder.string()));
-        };
-    });
+                take_session(session);
+                if (has_kept && other) {
+                    act({"session", kept.string()});
+                } else if (!run || other) {  // what the open one shows is kept
+                    act({"open", session->folder.string()});
+                    if (session->shapes.empty() && !session->study.cases.empty() && state().workspace == "design") {
+                        act({"workspace", "compare"});  // there is no shape to design
+                    }
+                }
+                for (const auto& words : then) {
+                    act(words);
+                }
+                Q_EMIT noted(QString("Opened %1: %2 cases").arg(name).arg(session->study.cases.size()));
+                if (run) {
+                    run_study();
+                } else if (session->results.loads.rows() == 0 && !session->study.cases.empty()) {
+                    Q_EMIT noted(
+                        session->results.changed > 0
+                            ? "What was computed of this study rests on other files, options or another version "
+                              "of the program: Study > Compute what changed (Ctrl+R) makes it anew."
+                            : "Nothing of this study is computed yet: Study > Compute what changed (Ctrl+R).");
+                }
+                Q_EMIT opened(qt(session->folder.string()));
+            };
+        });
 }
 
 void Desk::reload() {

@@ -50,6 +50,9 @@ public:
     void replay_log(const std::filesystem::path& file, const std::filesystem::path& start = {}, bool recover = false);
     void open_session_file(const std::filesystem::path& file);
     void save_session_file(const std::filesystem::path& file);
+    /// Keeps what is seen of the study for the next time it is opened, where a log is kept; quietly nothing where its
+    /// folder cannot be written.
+    void keep_session() const;
 
 Q_SIGNALS:
     void changed();

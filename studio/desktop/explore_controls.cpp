@@ -28,7 +28,7 @@ void ExplorePanel::build_head(QVBoxLayout& column) {
     x_->setAccessibleName("Along the scatter plot");
     y_->setAccessibleName("Up the scatter plot");
     brush_ = new QLineEdit;
-    brush_->setPlaceholderText("all; or gap=2mm:5mm, lift_force=0:0.3");
+    brush_->setPlaceholderText("all; or gap=2mm:5mm, pitch=0, lift_force=0:0.3");
     brush_->setAccessibleName("Ranges that are kept");
     brush_->setMinimumWidth(180);
     brush_->setToolTip("The ranges that are dragged on the axes, as numbers: change them and press Enter");

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <set>
 
 #include "core/table_rows.h"
 #include "core/text.h"
@@ -136,16 +137,53 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
                                 (low < high ? core::format_number(low, 6) + ":" + core::format_number(high, 6)
                                             : std::string())});
     });
-    connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] {
-        take_->setEnabled(state().explore.shapes && !table_->selectionModel()->selectedRows().isEmpty());
-        Words words = {"select"};
-        for (const auto& index : table_->selectionModel()->selectedRows()) {
-            words.push_back("case/" + index.data().toString().toStdString());
-        }
-        if (words.size() > 1 && !state().explore.shapes) {
-            desk_.act(words);
-        }
+    connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, &ExplorePanel::take_selection);
+    connect(table_, &QTableView::activated, this, [this] {  // Enter
+        state().explore.shapes ? take_selected() : static_cast<void>(desk_.act({"workspace", "compare"}));
     });
+}
+
+void ExplorePanel::take_selection() {
+    const auto chosen = table_->selectionModel()->selectedRows();
+    take_->setEnabled(state().explore.shapes && !chosen.isEmpty());
+    Words words = {"select"};
+    for (const auto& index : chosen) {
+        words.push_back("case/" + index.data().toString().toStdString());
+    }
+    if (words.size() > 1 && !state().explore.shapes && !quiet_) {
+        desk_.act(words);
+    }
+}
+
+std::vector<std::size_t> ExplorePanel::marked() const {
+    const auto names = state().selected("case");
+    const std::set<std::string> chosen(names.begin(), names.end());
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < this->rows().rows() && !chosen.empty() && !state().explore.shapes; ++row) {
+        if (chosen.contains(name_of_row(row))) {
+            rows.push_back(row);
+        }
+    }
+    return rows;
+}
+
+/// Rows that follow one another are one range, as in the tree.
+void ExplorePanel::show_selection() {
+    const auto of_cases = marked();
+    const std::set<std::size_t> chosen(of_cases.begin(), of_cases.end());
+    QItemSelection wanted;
+    const auto count = static_cast<int>(kept_.size());
+    for (int row = 0, next = 0; row < count; row = next + 1) {
+        for (next = row; next < count && chosen.contains(kept_[static_cast<std::size_t>(next)]);) {
+            ++next;
+        }
+        if (next > row) {
+            wanted.select(table_rows_->index(row, 0), table_rows_->index(next - 1, table_rows_->columnCount() - 1));
+        }
+    }
+    if (!state().explore.shapes && wanted != table_->selectionModel()->selection()) {
+        table_->selectionModel()->select(wanted, QItemSelectionModel::ClearAndSelect);
+    }
 }
 
 const core::Table& ExplorePanel::rows() const {
@@ -269,7 +307,8 @@ void ExplorePanel::draw_again(bool) {
     for (const auto& [name, range] : state().explore.brush) {
         if (const auto* column = table.find(name); column != nullptr && !column->is_text()) {
             ranges.push_back({name, range[0], range[1]});
-            said << qt(name) + "=" + in_unit(range[0], *column) + ":" + in_unit(range[1], *column);
+            said << qt(name) + "=" + in_unit(range[0], *column) +
+                        (range[0] < range[1] ? ":" + in_unit(range[1], *column) : QString());
         }
     }
     kept_ = core::rows_within(table, ranges);
@@ -278,7 +317,7 @@ void ExplorePanel::draw_again(bool) {
         brush_->setText(said.join(", "));
         brush_->setModified(false);
     }
-    parallel_->show_brush(state().explore.brush, kept_);
+    parallel_->show_brush(state().explore.brush, kept_, marked());
     show_count();
     fill_table();
     draw_scatter();
@@ -343,14 +382,20 @@ void ExplorePanel::fill_table() {
     const auto name = [names, held = std::pair(desk_.session_pointer(), shapes_)](std::size_t row) {
         return names != nullptr && names->is_text() ? names->text[row] : std::to_string(row);
     };
-    table_rows_->show(shapes ? "shape" : "case", std::move(columns), kept_,
-                      {[name](std::size_t row) { return qt(name(row)); },
-                       [refused](std::size_t row) {
-                           return refused != nullptr && refused->text[row] != "-" ? qt(refused->text[row]) : QString();
-                       },
-                       [this, name](std::size_t row) { return state().stars.contains("case/" + name(row)); }});
-    table_->resizeColumnsToContents();
-    take_->setEnabled(false);
+    quiet_ = true;
+    const bool other = table_rows_->show(
+        shapes ? "shape" : "case", std::move(columns), kept_,
+        {[name](std::size_t row) { return qt(name(row)); },
+         [refused](std::size_t row) {
+             return refused != nullptr && refused->text[row] != "-" ? qt(refused->text[row]) : QString();
+         },
+         [this, name](std::size_t row) { return state().stars.contains("case/" + name(row)); }});
+    if (other) {
+        table_->resizeColumnsToContents();
+        take_->setEnabled(false);
+    }
+    show_selection();
+    quiet_ = false;
 }
 
 void ExplorePanel::draw_scatter() {
@@ -395,6 +440,19 @@ void ExplorePanel::draw_scatter() {
     }
     if (!kept.x.empty()) {
         figure.points.push_back(kept);
+    }
+    core::FigurePoints chosen;
+    chosen.name = "selected";
+    chosen.colour = core::palette(1);
+    chosen.size = kept.size + 3;
+    for (const std::size_t row : marked()) {
+        if (std::isfinite(x->numbers[row]) && std::isfinite(y->numbers[row])) {
+            chosen.x.push_back(to_x(x->numbers[row]));
+            chosen.y.push_back(to_y(y->numbers[row]));
+        }
+    }
+    if (!chosen.x.empty()) {
+        figure.points.push_back(chosen);
     }
     scatter_->show_figure(figure, true);
 }

@@ -56,6 +56,10 @@ private:
     void ask_shapes();
     void show_axes();
     void fill_table();
+    void take_selection();
+    void show_selection();
+    /// Rows of the selected cases.
+    [[nodiscard]] std::vector<std::size_t> marked() const;
     void draw_scatter();
     void draw_pictures();
     void show_count();
@@ -94,6 +98,7 @@ private:
     CasePictures* cases_ = nullptr;
     QTableView* table_ = nullptr;
     KeptRows* table_rows_ = nullptr;
+    bool quiet_ = false;  ///< what is selected comes from the state
 };
 
 }  // namespace underbody::studio

@@ -71,6 +71,10 @@ void FieldsPanel::build() {
     grid_->setContentsMargins(0, 0, 0, 0);
     grid_->setSpacing(3);
     stack_->addWidget(cells);
+    choice_said_ = new QLabel;
+    choice_said_->setWordWrap(true);
+    choice_said_->hide();
+    right->addWidget(choice_said_);
     auto* halves = new QSplitter(Qt::Vertical);
     halves->addWidget(fields_);
     numbers_ = new CompareNumbers(desk_, halves);
@@ -147,6 +151,8 @@ void FieldsPanel::draw_again(bool) {
     auto sources = wanted();
     shared_ = title_by_difference(sources);
     stack_->setCurrentIndex(sources.empty() ? 0 : 1);
+    choice_said_->setText(said_of_choice(sources));
+    choice_said_->setHidden(choice_said_->text().isEmpty());
     lay_out(sources);
     bool all_ready = true;
     for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -326,6 +332,7 @@ Sheet FieldsPanel::sheet() const {
                     : state().fields.whole_range ? "over the whole range"
                                                  : "from the 1st to the 99th hundredth of what is seen") +
                    ", the same for all";
+    sheet.about += choice_said_->isHidden() ? QString() : "; " + choice_said_->text();
     sheet.rows = numbers_->rows();
     sheet.bold = numbers_->beyond();
     sheet.about += sheet.bold.empty() ? "" : "; bold: more than twice the joint standard deviation";

@@ -50,6 +50,8 @@ public:
     [[nodiscard]] std::size_t pictures() const;
     /// The sentence that a cell shows in the place of a picture.
     [[nodiscard]] QString said(std::size_t cell) const;
+    /// What of the chosen is shown; empty: all that is chosen.
+    [[nodiscard]] QString said_of_choice() const;
     /// Why the file of a cell was not read; empty: it was, or will be.
     [[nodiscard]] QString failed(std::size_t cell) const;
     /// The values at the place that is probed, a line a cell; empty: none is.
@@ -105,6 +107,8 @@ private:
     void add_body(QBoxLayout& left);
     void follow_controls();
     [[nodiscard]] std::vector<Source> wanted() const;
+    /// Where not the chosen cases are shown, or not all of them: what is.
+    [[nodiscard]] QString said_of_choice(const std::vector<Source>& sources) const;
     /// Cases beside each other are titled by what tells them apart; returns what all have in common.
     [[nodiscard]] QString title_by_difference(std::vector<Source>& sources) const;
     [[nodiscard]] Source source_of(const cases::Case& one) const;
@@ -149,6 +153,7 @@ private:
     QStackedLayout* stack_ = nullptr;
     QWidget* fields_ = nullptr;
     QLabel* empty_ = nullptr;
+    QLabel* choice_said_ = nullptr;
     QListWidget* zones_ = nullptr;
     QComboBox* array_ = nullptr;
     QLineEdit* range_ = nullptr;

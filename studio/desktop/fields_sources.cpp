@@ -1,4 +1,5 @@
 // Compare: which files are shown, how they are read, and what is done with one that cannot be.
+#include <QLabel>
 #include <algorithm>
 
 #include "cases/case_loads.h"
@@ -137,6 +138,26 @@ std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
         source.reading.time = state().fields.time;
     }
     return sources;
+}
+
+QString FieldsPanel::said_of_choice() const { return choice_said_->text(); }
+
+QString FieldsPanel::said_of_choice(const std::vector<Source>& sources) const {
+    const auto& all = state().selection;
+    const auto chosen = std::count_if(all.begin(), all.end(), [](const std::string& id) {
+        return id.starts_with("case/") || id.starts_with("field/");
+    });
+    if (chosen > static_cast<std::ptrdiff_t>(sources.size())) {
+        return QString("%1 of %2 chosen cases are shown: the first ones").arg(sources.size()).arg(chosen);
+    }
+    if (chosen > 0 || sources.empty()) {
+        return {};
+    }
+    const auto last = state().last.find("case");
+    return last != state().last.end() && !last->second.empty()
+               ? QString("No case is chosen now: those that were chosen last are shown")
+               : QString(
+                     "No case is chosen: the first one is shown; choose up to six on the left (Ctrl+click adds one)");
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include <QDropEvent>
 #include <QEvent>
 #include <QKeyEvent>
+#include <QLineEdit>
 #include <QMainWindow>
 #include <QMimeData>
 #include <QPlainTextEdit>
@@ -68,11 +69,25 @@ bool is_file_on(const QObject* watched, const QEvent* event) {
            static_cast<const QDropEvent*>(event)->mimeData()->hasUrls();
 }
 
+/// A field in which nothing was typed has nothing of its own to undo: the key is the window's.
+bool is_undo_of_window(const QObject* watched, QEvent* event) {
+    const auto* field = qobject_cast<const QLineEdit*>(watched);
+    if (event->type() != QEvent::ShortcutOverride || field == nullptr || field->isModified()) {
+        return false;
+    }
+    const auto* key = static_cast<const QKeyEvent*>(event);
+    return key->matches(QKeySequence::Undo) || key->matches(QKeySequence::Redo);
+}
+
 }  // namespace
 
 InputGuard::InputGuard(QObject* parent) : QObject(parent) { qApp->installEventFilter(this); }
 
 bool InputGuard::eventFilter(QObject* watched, QEvent* event) {
+    if (is_undo_of_window(watched, event)) {
+        event->ignore();
+        return true;
+    }
     if (event->type() == QEvent::KeyPress) {
         const auto* view = qobject_cast<QAbstractItemView*>(watched);
         return view != nullptr && static_cast<QKeyEvent*>(event)->matches(QKeySequence::Copy) && copy_cells(*view);

@@ -1,6 +1,7 @@
 #include "studio/desktop/kept_rows.h"
 
 #include <QFont>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,13 +10,22 @@
 
 namespace underbody::studio {
 
-void KeptRows::show(const QString& first, std::vector<Column> columns, std::vector<std::size_t> rows, Said said) {
+bool KeptRows::show(const QString& first, std::vector<Column> columns, std::vector<std::size_t> rows, Said said) {
+    const bool same = first == first_ && rows == rows_ &&
+                      std::equal(columns.begin(), columns.end(), columns_.begin(), columns_.end(),
+                                 [](const Column& a, const Column& b) { return a.values == b.values; });
+    if (same) {
+        said_ = std::move(said);
+        Q_EMIT dataChanged(index(0, 0), index(rowCount() - 1, columnCount() - 1));
+        return false;
+    }
     beginResetModel();
     first_ = first;
     columns_ = std::move(columns);
     rows_ = std::move(rows);
     said_ = std::move(said);
     endResetModel();
+    return true;
 }
 
 int KeptRows::rowCount(const QModelIndex& above) const { return above.isValid() ? 0 : static_cast<int>(rows_.size()); }

@@ -25,8 +25,9 @@ public:
     };
     using QAbstractTableModel::QAbstractTableModel;
 
-    /// `rows` of the columns, which stay until the next call; `first`: what the rows are ("case").
-    void show(const QString& first, std::vector<Column> columns, std::vector<std::size_t> rows, Said said);
+    /// `rows` of the columns, which stay until the next call; `first`: what the rows are ("case"). False when they are
+    /// the same rows as before: what is selected and where it is rolled to stays.
+    bool show(const QString& first, std::vector<Column> columns, std::vector<std::size_t> rows, Said said);
 
     [[nodiscard]] int rowCount(const QModelIndex& above = {}) const override;
     [[nodiscard]] int columnCount(const QModelIndex& above = {}) const override;

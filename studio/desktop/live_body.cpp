@@ -84,11 +84,12 @@ void add_added_mass(LiveBody& body, core::Progress& progress) {
 }
 
 std::map<std::string, std::array<double, 2>> allowed_ranges(const geometry::BodyShape& shape,
+                                                            const std::set<std::string>& parts,
                                                             core::Progress& progress) {
     std::map<std::string, std::array<double, 2>> ranges;
     for (const auto& [name, unit] : geometry::parameter_names()) {
         progress.check();
-        if (unit.empty()) {
+        if (unit.empty() || !parts.contains(name.substr(0, name.find('.')))) {
             continue;
         }
         double value = 0;
@@ -100,7 +101,7 @@ std::map<std::string, std::array<double, 2>> allowed_ranges(const geometry::Body
         const auto allowed = [&, parameter = name](double number) {
             try {
                 geometry::BodyShape other = shape;
-                geometry::set_parameter(other, parameter, core::format_number(number));
+                geometry::set_parameter(other, parameter, number);
                 geometry::check(other);
                 return true;
             } catch (const core::Error&) {
@@ -109,11 +110,14 @@ std::map<std::string, std::array<double, 2>> allowed_ranges(const geometry::Body
         };
         const auto end = [&](double far) {
             double in = value, out = far;
-            for (int i = 0; i < 12 && !allowed(out); ++i) {
+            if (allowed(far)) {
+                return far;
+            }
+            for (int i = 0; i < 10; ++i) {  // as fine as a slider
                 const double middle = 0.5 * (in + out);
                 (allowed(middle) ? in : out) = middle;
             }
-            return allowed(out) ? out : in;
+            return in;
         };
         const bool share = name == "body.base_cut" || name == "body.taper" || name.ends_with("position");
         const double most = unit == "rad" ? 0.35 : share ? 1 : std::max(2 * std::abs(value), 0.1 * shape.length);

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "core/figure.h"
@@ -45,8 +46,9 @@ LiveBody resting_body(const geometry::BodyShape& shape, const geometry::Placemen
 void add_added_mass(LiveBody& body, core::Progress& progress = core::Progress::none());
 
 /// How far each number of a shape may go, the others as they are: where `check` lets it, at most twice itself or a
-/// tenth of the length.
+/// tenth of the length. Of the parts that are named ("body", "protrusion").
 std::map<std::string, std::array<double, 2>> allowed_ranges(const geometry::BodyShape& shape,
+                                                            const std::set<std::string>& parts,
                                                             core::Progress& progress = core::Progress::none());
 
 }  // namespace underbody::studio

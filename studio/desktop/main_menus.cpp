@@ -72,6 +72,7 @@ void MainWindow::build_file_menu() {
     menu->addSeparator();
     add(menu, "&Save session", "Ctrl+S", [this] { save_session(false); });
     add(menu, "Save session &as …", "Ctrl+Shift+S", [this] { save_session(true); });
+    add(menu, "Save s&hape as …", "", [this] { save_shape(); });
     add(menu, "&Locate what has moved …", "", [this] {
         const QString folder = QFileDialog::getExistingDirectory(this, "Where is the study now?");
         if (!folder.isEmpty()) {
@@ -248,14 +249,20 @@ bool MainWindow::write_chosen(QString path, const QStringList& endings,
 
 namespace {
 /// The dialog does not ask: `write_chosen` does, when the ending is known.
-QString ask_path(QWidget* parent, const QString& title, const QString& filter) {
-    return QFileDialog::getSaveFileName(parent, title, {}, filter, nullptr, QFileDialog::DontConfirmOverwrite);
+QString ask_path(QWidget* parent, const QString& title, const QString& name, const QString& filter) {
+    return QFileDialog::getSaveFileName(parent, title, name, filter, nullptr, QFileDialog::DontConfirmOverwrite);
 }
 }  // namespace
 
+QString MainWindow::proposed_file(const QString& ending) const {
+    return qt(proposed_name(desk_->state(), desk_->session())) + ending;
+}
+
 void MainWindow::save_session(bool elsewhere) {
-    const QString path =
-        elsewhere || session_file_.isEmpty() ? ask_path(this, "Save session", "Sessions (*.ubs)") : session_file_;
+    const QString path = elsewhere || session_file_.isEmpty()
+                             ? ask_path(this, "Save session", QFileInfo(qt(desk_->state().study)).fileName() + ".ubs",
+                                        "Sessions (*.ubs)")
+                             : session_file_;
     const auto write = [&](const fs::path& file) {
         desk_->save_session_file(file);
         session_file_ = qt(file.string());
@@ -265,6 +272,27 @@ void MainWindow::save_session(bool elsewhere) {
     } else {
         write_chosen(path, {".ubs"}, write);
     }
+}
+
+void MainWindow::save_shape() {
+    guarded("saving the shape", [&] {
+        const std::string shown = shown_shape(desk_->state(), desk_->session());
+        if (shown.empty()) {
+            throw core::InputError("missing", "there is no shape to save");
+        }
+        write_chosen(ask_path(this, "Save shape", qt(shown) + ".toml", "Shapes (*.toml)"), {".toml"},
+                     [&](const fs::path& path) { write_shown_shape(path); });
+    });
+}
+
+void MainWindow::write_shown_shape(const fs::path& path) {
+    const std::string shown = shown_shape(desk_->state(), desk_->session());
+    auto shape = shape_of(desk_->state(), desk_->session(), shown);
+    shape.name = path.stem().string();
+    core::write_file(path, geometry::write_shape(shape));
+    Words line = shape_command(desk_->state(), desk_->session(), shown);
+    line.insert(line.end(), {"--as", path.string()});
+    problems_->note("The same: " + qt(line_of(line)));
 }
 
 void MainWindow::export_picture() {
@@ -277,7 +305,7 @@ void MainWindow::export_picture() {
         for (const auto& ending : endings) {
             filter += "*" + ending + " ";
         }
-        write_chosen(ask_path(this, "Export picture", filter.trimmed() + ")"), endings,
+        write_chosen(ask_path(this, "Export picture", proposed_file(endings.front()), filter.trimmed() + ")"), endings,
                      [&](const fs::path& path) { current()->export_picture(path); });
     });
 }
@@ -287,7 +315,7 @@ void MainWindow::export_table() {
         if (!current()->has_table()) {
             throw core::InputError("missing", "this workspace shows no table yet");
         }
-        write_chosen(ask_path(this, "Export table", "Tables (*.csv)"), {".csv"},
+        write_chosen(ask_path(this, "Export table", proposed_file(".csv"), "Tables (*.csv)"), {".csv"},
                      [&](const fs::path& path) { current()->export_table(path); });
     });
 }
@@ -347,8 +375,11 @@ void MainWindow::ask_for_cfd() {
         if (!desk_->has_study() || shape.empty()) {
             throw core::InputError("missing", "there is no study or no shape to ask for");
         }
+        const auto& bodies = desk_->session().study.bodies;
+        const bool known =
+            std::any_of(bodies.begin(), bodies.end(), [&](const auto& one) { return one.name == shape; });
         const QString name = QInputDialog::getText(this, "CFD of this shape", "Name of the new body in the study",
-                                                   QLineEdit::Normal, qt(shape) + "-2");
+                                                   QLineEdit::Normal, qt(shape) + (known ? "-2" : ""));
         if (!name.isEmpty()) {
             add_to_sweep(name.toStdString());
         }

@@ -403,6 +403,8 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         return;
     }
     if (remember_) {
+        desk_->end_gesture();
+        desk_->keep_session();
         QSettings settings;
         settings.setValue("geometry", saveGeometry());
         settings.setValue("layout", saveState());

@@ -67,6 +67,9 @@ public:
     /// not added. Throws core::Error.
     bool add_to_sweep(const std::string& name);
 
+    /// Writes the shape that Design shows, with its changes, as a SHAPE.toml. Throws core::Error.
+    void write_shown_shape(const std::filesystem::path& path);
+
     /// Writes the exported files again whose table has changed since, or that are gone.
     void export_stale();
 
@@ -109,6 +112,8 @@ private:
     void ask_for_cfd();
     void say_what_is_stale();
     void save_session(bool elsewhere);
+    void save_shape();
+    [[nodiscard]] QString proposed_file(const QString& ending) const;
     void copy_picture();
     void guarded(const QString& what, const std::function<void()>& work);
     void remember_study(const QString& folder);

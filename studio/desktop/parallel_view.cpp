@@ -57,9 +57,10 @@ void ParallelView::show_axes(std::vector<Axis> axes) {
 }
 
 void ParallelView::show_brush(const std::map<std::string, std::array<double, 2>>& brush,
-                              const std::vector<std::size_t>& kept) {
+                              const std::vector<std::size_t>& kept, const std::vector<std::size_t>& marked) {
     brush_ = brush;
     kept_ = kept;
+    marked_ = marked;
     bright_ = {};
     update();
 }
@@ -124,6 +125,10 @@ void ParallelView::draw_layers() {
         painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
         painter.setPen(QPen(palette().highlight().color(), 1.4));
         for (const std::size_t row : kept_) {
+            draw_line(painter, row);
+        }
+        painter.setPen(QPen(palette().text().color(), 2.4));
+        for (const std::size_t row : marked_) {
             draw_line(painter, row);
         }
     }

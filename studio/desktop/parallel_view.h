@@ -25,7 +25,9 @@ public:
     };
     explicit ParallelView(QWidget* parent);
     void show_axes(std::vector<Axis> axes);
-    void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept);
+    /// `marked`: rows whose lines are drawn strong, whatever is kept.
+    void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept,
+                    const std::vector<std::size_t>& marked = {});
     /// What stands there while there is nothing to show.
     void say(const QString& text);
     /// Room above the axes, px: of as many lines as the longest title takes.
@@ -60,7 +62,7 @@ private:
 
     std::vector<Axis> axes_;
     std::map<std::string, std::array<double, 2>> brush_;
-    std::vector<std::size_t> kept_;
+    std::vector<std::size_t> kept_, marked_;
     QPixmap pale_;    ///< all lines, drawn once
     QPixmap bright_;  ///< the kept ones
     QString empty_;

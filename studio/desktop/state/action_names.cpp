@@ -297,6 +297,9 @@ std::string name_of(const Words& words) {
     if (verb == "exported") {
         return "export " + first.substr(first.rfind('/') + 1);
     }
+    if (verb == "session") {
+        return "open a study as it was left";
+    }
     if (verb == "vary") {
         return first.empty() ? "vary nothing" : "vary " + key_of(first) + more;
     }
@@ -319,7 +322,7 @@ std::string merge_key(const Words& words) {
 
 std::string command_of(const State& after, const Words& words, const Session& session) {
     const std::string& verb = kind_of(words).verb;
-    if (verb == "open") {
+    if (verb == "open" || verb == "session") {
         return line_of({"underbody", "study", "list", after.study});
     }
     if (verb == "add") {

@@ -192,7 +192,11 @@ State brush(State state, const Words& words, const Session& session) {
         if (text.empty()) {
             state.explore.brush.erase(column);
         } else {
-            state.explore.brush[column] = range_of(text, unit_of_column(column, session).c_str());
+            const std::string unit = unit_of_column(column, session);
+            const auto middle = text.find(':', 1);
+            const bool one = middle == std::string::npos || text.substr(0, middle) == text.substr(middle + 1);
+            const double value = one ? core::parse_in(text.substr(0, middle), unit) : 0;
+            state.explore.brush[column] = one ? std::array<double, 2>{value, value} : range_of(text, unit.c_str());
         }
     }
     return state;

@@ -10,6 +10,7 @@
 #include "geometry/body/variants.h"
 #include "studio/desktop/state/action_parts.h"
 #include "studio/desktop/state/known_things.h"
+#include "studio/desktop/state/session_file.h"
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/points/range_policy.h"
 
@@ -44,6 +45,21 @@ State open_study(State state, const Words& words, const Session&) {
                                "a study is a folder with a study.toml; see cases/evie");
     }
     return fresh;
+}
+
+/// What is not there any more is left out, but for the study itself.
+State open_as_kept(State, const Words& words, const Session&) {
+    need(words, 1, 1, "session FILE");
+    auto saved = read_session(existing_path(words[0]));
+    const auto gone = [&](const std::string& path) {
+        return std::find(saved.missing.begin(), saved.missing.end(), path) != saved.missing.end();
+    };
+    if (gone(saved.state.study)) {
+        throw core::InputError("missing", "the session needs " + saved.state.study + ", which is not there",
+                               {words[0], {}, {}, {}}, "open the study where it is now");
+    }
+    std::erase_if(saved.state.files, [&](const std::string& entry) { return gone(entry.substr(entry.find(':') + 1)); });
+    return saved.state;
 }
 
 State add_file(State state, const Words& words, const Session&) {
@@ -310,6 +326,7 @@ State exported(State state, const Words& words, const Session& session) {
 const std::vector<ActionKind>& action_kinds() {
     static const std::vector<ActionKind> kinds = {
         {"open", "FOLDER", "opens a study", "open cases/evie", false, open_study},
+        {"session", "FILE", "opens a study as it was left", "session evie/.underbody/session.ubs", false, open_as_kept},
         {"add", "field|shape FILE", "shows a file from outside the study", "add shape hull.toml", false, add_file},
         {"remove", "FILE ...", "no longer shows such files", "remove hull.toml", false, remove_file},
         {"locate", "OLD NEW", "says where a study or file has moved to", "locate /old/evie /new/evie", false, locate},
@@ -343,8 +360,8 @@ const std::vector<ActionKind>& action_kinds() {
         {"exported", "FILE TABLE KEY=VALUE ...", "remembers a file that was exported, and how",
          "exported lift.h lift format=c", false, exported},
         {"axes", "X Y", "chooses what the scatter plot shows", "axes gap lift_force", true, action::explore_axes},
-        {"brush", "COLUMN=LOW:HIGH ...", "keeps cases within ranges; no range: all", "brush gap=2mm:5mm", true,
-         action::brush},
+        {"brush", "COLUMN=LOW:HIGH|VALUE ...", "keeps cases within ranges, or at a value; no range: all",
+         "brush gap=2mm:5mm", true, action::brush},
         {"vary", "PARAMETER=FROM:TO:COUNT ...", "makes the shapes between; no parameter: none",
          "vary protrusion.height=1mm:3mm:5", false, action::vary},
         {"rows", "cases|shapes", "explores the cases of the study or the shapes that vary", "rows cases", true,

@@ -92,6 +92,8 @@ void write_session(const State& state, const fs::path& file) {
     core::write_file(file, document.dump(2) + "\n");
 }
 
+fs::path kept_session(const fs::path& study) { return study / ".underbody" / "session.ubs"; }
+
 SavedSession read_session(const fs::path& file) {
     const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
     const json document = parsed(file);

@@ -13,6 +13,9 @@ namespace underbody::studio {
 /// Keys of an earlier file at that place that this program does not know stay.
 void write_session(const State& state, const std::filesystem::path& file);
 
+/// Where the window keeps what was last seen of a study.
+std::filesystem::path kept_session(const std::filesystem::path& study);
+
 struct SavedSession {
     State state;  ///< paths absolute
     /// Inputs that are not there (as absolute paths): `locate OLD NEW` says where they are now.

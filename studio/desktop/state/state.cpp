@@ -1,6 +1,7 @@
 #include "studio/desktop/state/state.h"
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "core/hash.h"
@@ -94,9 +95,37 @@ std::vector<std::string> shape_names(const State& state, const Session& session)
         }
     }
     for (const auto& [name, variant] : state.design.variants) {
-        names.push_back(name);
+        if (!session.shapes.contains(name)) {  // a kept one may have become a body of the study since
+            names.push_back(name);
+        }
     }
     return names;
+}
+
+std::string proposed_name(const State& state, const Session& session) {
+    const auto first_of = [&](const std::string& kind, const auto& known) {
+        std::vector<std::string> names;
+        for (const auto& one : known) {
+            names.push_back(one.name);
+        }
+        return state.current(kind, names);
+    };
+    const auto& at = state.workspace;
+    std::string what = at == "design"      ? shown_shape(state, session)
+                       : at == "explore"   ? (state.explore.shapes ? "shapes" : "cases")
+                       : at == "compare"   ? state.fields.array
+                       : at == "tables"    ? first_of("table", session.study.tables)
+                       : at == "stability" ? first_of("region", session.study.regions)
+                                           : first_of("measurement", session.study.measurements);
+    if (const auto cases = state.selected("case"); at == "compare" && !cases.empty()) {
+        what += "-" + cases.front() + (cases.size() > 1 ? "-and-" + std::to_string(cases.size() - 1) : "");
+    }
+    std::string name = at + (what.empty() ? "" : "-" + what);
+    for (char& letter : name) {
+        const bool plain = std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '.' || letter == '-';
+        letter = plain ? letter : '_';
+    }
+    return name;
 }
 
 std::string state_hash(const State& state) { return core::content_hash(json(state).dump()); }

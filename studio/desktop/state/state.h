@@ -170,6 +170,9 @@ struct WorkspaceView {
 /// The views of a workspace, in the order of their cells.
 const std::vector<WorkspaceView>& workspace_views(const std::string& workspace);
 
+/// What a file that is written of the workspace may be called, without an ending: "design-ellipse", "compare-pressure".
+std::string proposed_name(const State& state, const Session& session);
+
 /// Equal for equal states.
 std::string state_hash(const State& state);
 

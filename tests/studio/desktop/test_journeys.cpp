@@ -9,6 +9,7 @@
 #include <QScrollBar>
 #include <QTableView>
 #include <QTest>
+#include <QToolButton>
 #include <QWheelEvent>
 
 #include "cases/add_table.h"
@@ -17,8 +18,10 @@
 #include "studio/desktop/compare_numbers.h"
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/explore_panel.h"
+#include "studio/desktop/fields_panel.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/parallel_view.h"
+#include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/problems_panel.h"
 #include "tests/studio/desktop/heartbeat.h"
@@ -318,6 +321,144 @@ TEST_F(Journey, ComputingDoesNotStopTheWindow) {
     std::printf("longest gap while a study is computed: %.0f ms of processor time\n", 1000 * heartbeat.longest());
     EXPECT_LT(heartbeat.longest(), 0.1);
     EXPECT_EQ(status_of("ellipse-h5-p0"), "done");
+}
+
+// Of rows chosen one after the other the last one alone was left, and Enter did nothing.
+TEST_F(Journey, SeveralRowsOfTheTableAreChosenAndCompared) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    auto* table = panel<ExplorePanel>().findChild<QTableView*>();
+    using Selection = QItemSelectionModel;
+    for (const int row : {0, 2, 3}) {
+        table->selectionModel()->select(table->model()->index(row, 0), Selection::Select | Selection::Rows);
+    }
+    EXPECT_EQ(window_->desk().state().selected("case").size(), 3U);
+    EXPECT_EQ(table->selectionModel()->selectedRows().size(), 3) << "they are seen to be chosen";
+    act("select case/ellipse-h5-p0");
+    EXPECT_EQ(table->selectionModel()->selectedRows().size(), 1) << "what is chosen elsewhere is chosen here";
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    table->setCurrentIndex(table->selectionModel()->selectedRows().front());
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    QTest::keyClick(table, Qt::Key_Return);
+    EXPECT_EQ(window_->desk().state().workspace, "compare");
+    EXPECT_EQ(window_->desk().state().selected("case").size(), 2U);
+}
+
+TEST_F(Journey, ARangeMayBeOneValue) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    for (const char* line : {"brush gap=5mm", "brush gap=5mm:5mm", "brush gap=0.5cm"}) {
+        act("brush");
+        ASSERT_TRUE(act(line)) << line;
+        EXPECT_EQ(panel<ExplorePanel>().kept().size(), 1U) << line;
+    }
+    EXPECT_TRUE(act("brush gap="));
+    EXPECT_EQ(panel<ExplorePanel>().kept().size(), 5U);
+}
+
+TEST_F(Journey, CompareSaysWhatOfTheChosenItShows) {
+    open(computed_study());
+    act("workspace compare");
+    settle(*window_);
+    auto& fields = panel<FieldsPanel>();
+    EXPECT_TRUE(fields.said_of_choice().startsWith("No case is chosen")) << fields.said_of_choice().toStdString();
+    act("select case/ellipse-h5-p0");
+    EXPECT_EQ(fields.said_of_choice(), "");
+    std::string more = "select";
+    for (const auto& one : window_->desk().session().study.cases) {
+        more += " case/" + one.name;
+    }
+    act(more);  // as many as there are: five
+    EXPECT_EQ(fields.said_of_choice(), "");
+    for (const char* name : {"a.csv", "b.csv"}) {
+        fs::copy_file(computed_study() / "fields" / "ellipse-h5-p0.csv", folder_.path() / name);
+        act("add field " + (folder_.path() / name).string());
+        more += " field/" + (folder_.path() / name).string();
+    }
+    act(more);
+    EXPECT_TRUE(fields.said_of_choice().startsWith("6 of 7 chosen")) << fields.said_of_choice().toStdString();
+    settle(*window_);
+}
+
+// After Enter the field kept the keyboard, and its own empty history the key.
+TEST_F(Journey, UndoWorksFromAFieldInWhichNothingIsTyped) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    auto* number = panel<DesignPanel>().findChild<ParameterRow*>("body.length")->number();
+    number->selectAll();
+    QTest::keyClicks(number, "200 mm");
+    QKeyEvent undo(QEvent::ShortcutOverride, Qt::Key_Z, Qt::ControlModifier);
+    QApplication::sendEvent(number, &undo);
+    EXPECT_TRUE(undo.isAccepted()) << "what is typed is its own";
+    QTest::keyClick(number, Qt::Key_Return);
+    EXPECT_EQ(window_->desk().state().design.changes.at("ellipse").at("body.length"), "200 mm");
+    QKeyEvent after(QEvent::ShortcutOverride, Qt::Key_Z, Qt::ControlModifier);
+    QApplication::sendEvent(number, &after);
+    EXPECT_FALSE(after.isAccepted());
+}
+
+TEST_F(Journey, NumbersOfPartsThatTheShapeHasNotAreFolded) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    auto& design = panel<DesignPanel>();
+    auto* height = design.findChild<ParameterRow*>("protrusion.height");
+    EXPECT_FALSE(height->isVisible());
+    EXPECT_TRUE(design.findChild<ParameterRow*>("body.length")->isVisible());
+    for (const auto& parameter : geometry::parameter_names()) {
+        EXPECT_TRUE(parameter.unit.empty() ||
+                    design.findChild<ParameterRow*>(QString::fromStdString(parameter.name)) != nullptr)
+            << parameter.name << " can be reached";
+    }
+    auto* fold = design.findChild<QToolButton*>("fold protrusion");
+    QTest::mouseClick(fold, Qt::LeftButton);
+    EXPECT_TRUE(height->isVisible());
+    settle(*window_);
+    EXPECT_TRUE(height->slider()->isEnabled()) << "with its limits";
+    QTest::mouseClick(fold, Qt::LeftButton);
+    EXPECT_FALSE(height->isVisible());
+    act("set 'nozzle.diameter=5 mm'");
+    EXPECT_TRUE(design.findChild<ParameterRow*>("nozzle.diameter")->isVisible()) << "a part that is there is seen";
+}
+
+// Views, brush and stars were gone when the window was closed.
+TEST_F(Journey, AStudyIsOpenedAsItWasLeft) {
+    const fs::path study = copy_of_study();
+    const auto opened = [&](const std::function<void(Desk&)>& then) {
+        Jobs jobs(nullptr);
+        Desk desk(jobs, folder_.path() / "logs", nullptr);
+        desk.open_study(study);
+        for (int i = 0; i < 3000 && (!desk.has_study() || jobs.busy("open")); ++i) {
+            QTest::qWait(10);
+        }
+        then(desk);
+        desk.keep_session();
+    };
+    opened([](Desk& desk) {
+        EXPECT_EQ(desk.state().workspace, "design");
+        for (const char* line : {"workspace explore", "brush gap=2mm:5mm", "star case/ellipse-h5-p0",
+                                 "fields camera=bottom", "set 'body.length=200 mm'", "cells design body section"}) {
+            EXPECT_TRUE(desk.act(words_of(line))) << line;
+        }
+    });
+    opened([](Desk& desk) {
+        const State& state = desk.state();
+        EXPECT_EQ(state.workspace, "explore");
+        EXPECT_EQ(state.explore.brush.count("gap"), 1U);
+        EXPECT_TRUE(state.stars.contains("case/ellipse-h5-p0"));
+        EXPECT_EQ(state.fields.camera, "bottom");
+        EXPECT_EQ(state.design.changes.at("ellipse").at("body.length"), "200 mm");
+        EXPECT_EQ(state.cells.at("design").size(), 2U);
+        EXPECT_EQ(desk.history().steps().back().name, "open a study as it was left");
+        desk.undo();
+        EXPECT_TRUE(desk.state().study.empty()) << "opening is one step";
+        desk.redo();
+    });
+    core::write_file(study / ".underbody" / "session.ubs", "{}");
+    opened([&](Desk& desk) { EXPECT_EQ(desk.state().study, study.string()) << "a damaged one is passed over"; });
 }
 
 }  // namespace

@@ -55,6 +55,17 @@ fs::path elsewhere() {
     return folder.path();
 }
 
+/// What was last seen of the shipped study.
+fs::path kept_evie() {
+    static const core::TemporaryFolder folder;
+    State state;
+    state.study = evie().string();
+    state.workspace = "loop";
+    state.explore.brush["gap"] = {0.002, 0.005};
+    write_session(state, folder.path() / "kept.ubs");
+    return folder.path() / "kept.ubs";
+}
+
 /// A line of every verb and every key, fit for the shipped study.
 std::vector<std::string> every_action() {
     return {
@@ -101,6 +112,7 @@ std::vector<std::string> every_action() {
         "add shape " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
         "remove " + (evie() / "shapes" / "ellipse_front_bump1.toml").string(),
         "locate " + evie().string() + " " + (elsewhere() / "evie").string(),
+        "session " + kept_evie().string(),
         "open " + evie().string()};
 }
 
@@ -163,6 +175,20 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
     EXPECT_EQ(*history.state(), opened());
     history.go_to(most);
     EXPECT_EQ(state_hash(*history.state()), last);
+}
+
+// F12 proposed no name.
+TEST(StudioState, AFileIsNamedAfterWhatIsSeen) {
+    State state = opened();
+    EXPECT_EQ(proposed_name(state, *evie_session()), "design-ellipse");
+    state = applied(state, words_of("workspace tables"), *evie_session());
+    EXPECT_EQ(proposed_name(state, *evie_session()).substr(0, 7), "tables-");
+    state = applied(state, words_of("select 'table/lift over gap and pitch'"), *evie_session());
+    EXPECT_EQ(proposed_name(state, *evie_session()), "tables-lift_over_gap_and_pitch");
+    state = applied(state, words_of("workspace compare"), *evie_session());
+    EXPECT_EQ(proposed_name(state, *evie_session()), "compare-pressure");
+    state = applied(state, words_of("select case/ellipse-h5-p0 case/ellipse-h2-p0"), *evie_session());
+    EXPECT_EQ(proposed_name(state, *evie_session()), "compare-pressure-ellipse-h5-p0-and-1");
 }
 
 // What somebody said of a file goes with it: into the command, away with it, and to where it has moved.
