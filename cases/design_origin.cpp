@@ -161,7 +161,10 @@ public:
             }
         }
         if (found != nullptr && !ambiguous) {
-            take_over(*found, !fewest.empty(), run);
+            const bool other_shape = std::any_of(fewest.begin(), fewest.end(), [](const std::string& text) {
+                return text.starts_with("shape:") || text.find('.') < text.find(':');
+            });
+            take_over(*found, other_shape, run);
         } else if (const auto now = asked(run.at, run.fidelity)) {
             fewest = differences_of(run.origin, origin_of(spec_, base_, *now));
         }
@@ -172,11 +175,11 @@ public:
 
 private:
     /// What the row does not say, by its run.
-    void take_over(const SolvedRun& one, bool other, DesignRun& run) const {
+    void take_over(const SolvedRun& one, bool other_shape, DesignRun& run) const {
         run.at = filled(run, one);
         run.origin.numbers.insert(one.origin.numbers.begin(), one.origin.numbers.end());
         if (run.origin.shape.empty()) {
-            const bool tied_otherwise = other && one.origin.shape == hash_of_base(spec_, base_);
+            const bool tied_otherwise = other_shape && one.origin.shape == hash_of_base(spec_, base_);
             run.origin.shape = tied_otherwise ? one.record.shape.substr(0, 12) : one.origin.shape;
         }
     }

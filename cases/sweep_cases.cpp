@@ -13,6 +13,7 @@
 #include "core/counted.h"
 #include "core/file.h"
 #include "core/inputs.h"
+#include "core/own_files.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "geometry/body/body_surface.h"
@@ -93,6 +94,7 @@ std::optional<CaseRecord> read_record(const fs::path& folder) {
 }
 
 void write_record(const fs::path& folder, const CaseRecord& record) {
+    const core::ReplacingAllowed of_this_program;  // copied with its study it has lost what says so
     core::write_file(folder / record_file, to_json(record).dump(1) + "\n");
 }
 

@@ -97,6 +97,7 @@ TEST_F(OriginsOfRows, RowsOfOtherConditionsAreLeftOutByTheRunsThatAreThere) {
     EXPECT_EQ(usable(open()), 8u);
     EXPECT_TRUE(open().notes.empty()) << open().notes.front().message;
     EXPECT_EQ(open().surrogates().at("lift_force").check().points, 8u);
+    const std::string shape = open().results_table().text("shape_hash").front();
     struct Change {
         const char *file, *from, *to, *said;
     };
@@ -115,6 +116,8 @@ TEST_F(OriginsOfRows, RowsOfOtherConditionsAreLeftOutByTheRunsThatAreThere) {
         EXPECT_THAT(said(open()), HasSubstr(std::string("8 of 8 rows are of something else than [design] asks for "
                                                         "now, and left out: 8 (") +
                                             change.said));
+        // What a row is of is written with it, whatever is asked for now.
+        EXPECT_EQ(open().results_table().text("shape_hash").front(), shape);
         core::write_file(folder_.path() / change.file, before);
     }
     EXPECT_EQ(usable(open()), 8u);
@@ -183,6 +186,20 @@ TEST_F(OriginsOfRows, AShapeFileThatCannotFollowIsNamedAndItsDesignStaysPlanned)
     }
     core::protect_other_files(false);
     EXPECT_EQ(open().plan().front().state, "planned");
+}
+
+/// So has the record of a case, which another version of the program confirms.
+TEST_F(OriginsOfRows, TheRecordOfACopiedCaseIsWrittenAgain) {
+    const fs::path run = runs() / "design-001-h5-p0-u0.5", file = run / record_file;
+    const std::string text = core::read_file(file);
+    CaseRecord record = read_record(run).value();
+    record.code = "another";
+    fs::remove(file);
+    std::ofstream(file) << text;
+    core::protect_other_files(true);
+    EXPECT_NO_THROW(write_record(run, record));
+    core::protect_other_files(false);
+    EXPECT_EQ(read_record(run)->code, "another");
 }
 
 }  // namespace
