@@ -329,6 +329,7 @@ TEST_F(Journey, SeveralRowsOfTheTableAreChosenAndCompared) {
     act("workspace explore");
     settle(*window_);
     auto* table = panel<ExplorePanel>().findChild<QTableView*>();
+    ASSERT_EQ(table->model()->rowCount(), 5);
     using Selection = QItemSelectionModel;
     for (const int row : {0, 2, 3}) {
         table->selectionModel()->select(table->model()->index(row, 0), Selection::Select | Selection::Rows);
