@@ -202,9 +202,9 @@ void check(const ControlArguments& a, const SeparatedPlant& plant, const Control
 }
 
 nlohmann::json json_of(const LoopRun& loop, const SeparatedPlant& plant, const ControlLaw& law,
-                       const ControlArguments& a, const std::vector<std::string>& warnings) {
+                       const ControlArguments& a, const nlohmann::json& notes) {
     nlohmann::json json = loop;
-    json["warnings"] = warnings;
+    json.update(notes);
     json["velocity_gain"] = law.velocity_gain;
     json["gap_gain"] = law.gap_gain;
     nlohmann::json points = nlohmann::json::array();
@@ -231,7 +231,7 @@ void write_files(const ControlArguments& a, const LoopRun& loop, const Separated
 }
 
 int run_compare(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopOptions& o,
-                const std::vector<std::string>& warnings, Shell& shell) {
+                const nlohmann::json& notes, Shell& shell) {
     if (!a.export_c.empty()) {
         throw core::UsageError("option", "--export-c writes one controller, --compare compares them all", {},
                                "leave one of them out");
@@ -239,7 +239,9 @@ int run_compare(const ControlArguments& a, const SeparatedPlant& plant, const Co
     std::string text;
     const nlohmann::json list = compare_estimators(a, plant, law, o, text);
     if (shell.json) {
-        shell.print_json({{"estimators", list}, {"warnings", warnings}});
+        nlohmann::json json = notes;
+        json["estimators"] = list;
+        shell.print_json(json);
     }
     shell.print(text);
     return ExitCode::done;
@@ -279,8 +281,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
     check(a, plant, law, o, shell);
     const std::vector<std::string> outside = show_gaps_outside(shell, model, held, {law.reference_gap, o.gap});
     warnings.insert(warnings.end(), outside.begin(), outside.end());
+    const nlohmann::json notes = {{"warnings", warnings},
+                                  {"held_at_reference", show_held_at_reference(shell, model, held)}};
     if (a.compare) {
-        return run_compare(a, plant, law, o, warnings, shell);
+        return run_compare(a, plant, law, o, notes, shell);
     }
     const LoopEstimator estimator = design_loop_estimator(a.observer, plant, design_for(a, o));
     const LoopRun loop = close_loop(plant, law, estimator, o);
@@ -290,7 +294,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
     }
     shell.hand_over("motion", [&] { return loop.table(); });
     write_files(a, loop, plant, law, estimator, o);
-    nlohmann::json json = json_of(loop, plant, law, a, warnings);
+    nlohmann::json json = json_of(loop, plant, law, a, notes);
     std::string region_text;
     if (!a.region.empty()) {
         json["region"] = draw_region(a, plant, law, estimator, o, shell, region_text);

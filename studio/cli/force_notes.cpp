@@ -43,17 +43,24 @@ core::Problems outside_or_in_vain(const dynamics::Model& model, const dynamics::
 
 }  // namespace
 
+std::vector<std::string> show_held_at_reference(Shell& shell, const dynamics::Model& model,
+                                                const dynamics::Conditions& held,
+                                                const std::vector<dynamics::Channel>& moving) {
+    std::vector<std::string> notes;
+    for (const core::Problem& note : dynamics::held_at_reference(model, held, moving)) {
+        shell.print(note.message + "\n");
+        notes.push_back(note.message);
+    }
+    return notes;
+}
+
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
                  const std::vector<dynamics::Channel>& moving) {
     json["forces"] = dynamics::fits_json(model);
     for (const std::string& line : dynamics::fit_lines(model)) {
         shell.print(line + "\n");
     }
-    json["held_at_reference"] = nlohmann::json::array();
-    for (const core::Problem& note : dynamics::held_at_reference(model, held, moving)) {
-        shell.print(note.message + "\n");
-        json["held_at_reference"].push_back(note.message);
-    }
+    json["held_at_reference"] = show_held_at_reference(shell, model, held, moving);
     json["warnings"] = said(shell, together(outside_or_in_vain(model, held),
                                             together(dynamics::effects_without_motion(model), table_remarks(model))));
 }

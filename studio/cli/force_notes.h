@@ -18,6 +18,12 @@ class Shell;
 void show_forces(Shell& shell, const dynamics::Model& model, const dynamics::Conditions& held, nlohmann::json& json,
                  const std::vector<dynamics::Channel>& moving = {});
 
+/// What scales a force, is none of the `moving` and is given by nobody: said, and returned for `held_at_reference` of
+/// the JSON. For commands that do not show the fits.
+std::vector<std::string> show_held_at_reference(Shell& shell, const dynamics::Model& model,
+                                                const dynamics::Conditions& held,
+                                                const std::vector<dynamics::Channel>& moving = {});
+
 /// Says the warnings of the model's force tables alone (points that have not settled, outliers, ...) and returns
 /// them for `warnings` of the JSON: for commands whose numbers rest on the tables and that do not show the fits. What
 /// lies outside the tables: conditions, `held` over the model's own, or what was measured.

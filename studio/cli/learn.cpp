@@ -201,7 +201,8 @@ struct Learned {
     AugmentedModel model;
     Moments moments;
     core::Problems remarks;
-    std::vector<std::string> warnings;  ///< of the force tables, said already
+    std::vector<std::string> warnings;           ///< of the force tables, said already
+    std::vector<std::string> held_at_reference;  ///< likewise
     std::vector<KnownRow> rows;
     std::vector<PredictionError> predictions;
     std::string tested_on;
@@ -295,6 +296,7 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
     Learned out;
     out.warnings =
         a.data.empty() ? show_table_warnings(shell, declared, held) : show_table_warnings(shell, declared, split.train);
+    out.held_at_reference = show_held_at_reference(shell, declared, held);
     if (has_forces(layout)) {
         out.rows = heave_rows(layout, plant.virtual_mass, plant.bias);
     }
@@ -412,6 +414,7 @@ int run_learn(const LearnArguments& a, Shell& shell) {
     shell.show(learned.model.remarks);
     nlohmann::json json = describe(learned, options, a.scan, by_snapshots(a));
     json["warnings"] = learned.warnings;
+    json["held_at_reference"] = learned.held_at_reference;
     if (!a.out.empty()) {
         core::write_file(a.out, json.dump(2) + "\n");
     }

@@ -21,6 +21,7 @@
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/hold_with_jets.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
 
 namespace underbody::studio {
@@ -157,6 +158,7 @@ struct Job {
     std::vector<double> thrust;
     std::optional<dynamics::VehicleHold> hold;
     dynamics::TrajectoryOptions options;
+    core::Problems remarks;  ///< of the inputs, said already
 
     [[nodiscard]] dynamics::JetCommand command() const {
         if (hold) {
@@ -177,11 +179,27 @@ struct Job {
     }
 };
 
+/// Inputs are what acts; where logs of this vehicle say something else, a log among them would be read wrongly: says
+/// so.
+core::Problems taken_at_its_word(const std::string& file, dynamics::RecordReading records) {
+    records.input_between = dynamics::RecordReading::Between::unsaid;
+    const std::string other = dynamics::reading_text(records);
+    return other.empty()
+               ? core::Problems()
+               : core::Problems{{core::Problem::Severity::warning,
+                                 "taken at its word, as the inputs that act; [records] of the model reads logs "
+                                 "with " +
+                                     other + ": a log is not what acted ('predict' reads it so)",
+                                 {file, {}, {}, {}}}};
+}
+
 Job job_of(const SimulateArguments& a, Shell& shell) {
-    Job job{model_with(a.model, a.set), {}, {}, {}, {}, {}};
+    Job job{model_with(a.model, a.set), {}, {}, {}, {}, {}, {}};
     job.inputs.thrust.resize(job.model.jets.size());
     if (!a.inputs.empty()) {
         read_inputs(a.inputs, job.model.jets, job.inputs, shell);
+        job.remarks = taken_at_its_word(a.inputs, job.model.records);
+        shell.show(job.remarks);
     }
     job.start = motion_start(a.from, job.inputs.signals.held);
     for (const core::NamedValue& value :
@@ -227,6 +245,9 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Simula
         moving.push_back(Channel::speed);
     }
     show_forces(shell, job.model, job.inputs.signals.held, json, moving);
+    for (const core::Problem& remark : job.remarks) {
+        json["warnings"].push_back(remark.message);
+    }
     if (shell.json) {
         nlohmann::json document;
         dynamics::to_json(document, motion);

@@ -176,7 +176,9 @@ TEST_F(ModelForces, WhatHoldsAForceAtItsReferenceIsSaid) {
                      "scale.speed = { reference = \"0.5 m/s\", exponent = 2 }\n");
     const std::string said = "speed is not given: lift_force is that at its reference, speed 0.5 m/s";
     for (const std::vector<std::string>& command : {std::vector<std::string>{"linear", "scaled.toml"},
-                                                    {"simulate", "scaled.toml", "--from", "gap=5mm", "--for", "1"}}) {
+                                                    {"simulate", "scaled.toml", "--from", "gap=5mm", "--for", "1"},
+                                                    {"control", "scaled.toml", "--hold", "5mm", "--from", "gap=6mm"},
+                                                    {"learn", "scaled.toml", "--method", "grid"}}) {
         EXPECT_EQ(json(command)["held_at_reference"], nlohmann::json({said})) << command.front();
         EXPECT_THAT(run_underbody(command, folder_.path()).output, HasSubstr(said));
         std::vector<std::string> given = command;

@@ -180,6 +180,54 @@ TEST_F(Unsaid, PredictDoubtsADeclaredNoiseInTheWordsOfDiscover) {
     EXPECT_THAT(held.output, HasSubstr("times the declared noise"));
 }
 
+/// The scatter of coloured noise from reading to reading is a part of it: errors are told in what was declared, and by
+/// the prediction and the discovery in the same.
+TEST_F(Unsaid, AScatterBelowTheDeclaredNoiseDoesNotOverruleIt) {
+    write_swings("[noise]\ngap = \"0.5 mm\"\n", false, false);
+    const std::string doubt = "the figure is too large or the noise is coloured";
+    const auto predicted = run({"predict", "heave.toml", "--data", "swings"});
+    EXPECT_THAT(predicted.output, HasSubstr(doubt));
+    EXPECT_THAT(predicted.output, HasSubstr("times the declared noise of 0.0005 m"));
+    const auto found = run({"discover", "heave.toml", "--data", "swings", "--out", "found", "--candidates",
+                            "constant_force", "--placebo", "0", "--json"});
+    ASSERT_EQ(found.exit_code, 0) << found.errors;
+    const json document = json::parse(found.output);
+    EXPECT_THAT(document["warnings"].dump(), HasSubstr(doubt));
+    EXPECT_NEAR(
+        document["error"]["before"]["rmse"].get<double>() / document["error"]["in_noise"]["before"].get<double>(), 5e-4,
+        1e-9);
+}
+
+TEST_F(Unsaid, ALogIsNotWhatActsWhereTheModelReadsLogsOtherwise) {
+    write_swings("", false, false);
+    core::write_file(folder_.path() / "push.csv", "time [s], input_force [N]\n0, 0.01\n1, 0.02\n2, 0.01\n");
+    const std::vector<std::string> replay = {"simulate", "heave.toml", "--from", "gap=15mm",
+                                             "--inputs", "push.csv",   "--for",  "2"};
+    EXPECT_THAT(run(replay).output, Not(HasSubstr("at its word")));
+    const std::string model = core::read_file(folder_.path() / "heave.toml");
+    core::write_file(folder_.path() / "heave.toml", model + "[records]\ninput_force_between = \"held\"\n");
+    EXPECT_THAT(run(replay).output, Not(HasSubstr("at its word"))) << "how it is held alone turns nothing round";
+    core::write_file(folder_.path() / "heave.toml", model + "[records]\ninput_force_factor = -1\n");
+    EXPECT_THAT(run(replay).output,
+                HasSubstr("push.csv: taken at its word, as the inputs that act; [records] of the model "
+                          "reads logs with input_force times -1"));
+    auto as_json = replay;
+    as_json.emplace_back("--json");
+    EXPECT_THAT(json::parse(run(as_json).output)["warnings"].dump(), HasSubstr("at its word"));
+}
+
+TEST_F(Unsaid, EscapesThatReturnAreSaidOfDrawsToo) {
+    write_swings("", false, false);
+    std::vector<std::string> map = {"region", "heave.toml", "--axes", "gap=30mm:40mm,heave_velocity=0:0.1",
+                                    "--grid", "5x5",        "--for",  "20"};
+    const std::string said = "the force there pulls the vehicle back";
+    EXPECT_THAT(run(map).output, HasSubstr(said));
+    map.insert(map.end(), {"--draws", "3"});
+    EXPECT_THAT(run(map).output, HasSubstr(said));
+    map.emplace_back("--json");
+    EXPECT_THAT(json::parse(run(map).output)["remarks"].dump(), HasSubstr(said));
+}
+
 /// What is given and cannot be used is said or refused.
 TEST_F(Unsaid, WhatACommandCannotUseIsToldOrRefused) {
     write_swings("", false, false);

@@ -11,6 +11,7 @@
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
 
@@ -37,7 +38,8 @@ void HeaveLoop::measure_error() {
         change.channel = std::string("gap");
         change.unit = std::string("m");
         change.horizon = before.horizon;
-        change.noise = std::hypot(null_noise_.gap, null_noise_.slow);
+        change.noise =
+            dynamics::unit_of_errors(data_.declared_noise("gap"), std::hypot(null_noise_.gap, null_noise_.slow));
         change.before = estimate(before);
         change.after = estimate(after);
         if (std::isfinite(change.before.rmse) && std::isfinite(change.after.rmse)) {

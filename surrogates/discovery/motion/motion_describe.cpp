@@ -9,6 +9,7 @@
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
+#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
 
@@ -27,7 +28,8 @@ void MotionLoop::measure_error() {
             change.channel = shape().states[channels_[c]].channel;
             change.unit = shape().states[channels_[c]].unit;
             change.horizon = horizon;
-            change.noise = null_noise_.total(channels_[c]);
+            change.noise =
+                dynamics::unit_of_errors(data_.declared_noise(change.channel), null_noise_.total(channels_[c]));
             const auto estimate = [&](const Answer& answer) {
                 const BlockSquares sums = answer.windows[c].by_record(runs);
                 return error_by_groups(sums.square, sums.count, options_.seed);

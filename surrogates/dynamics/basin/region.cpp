@@ -147,12 +147,13 @@ void remark_on_escapes(const HeaveRegionSetup& setup, const RegionOptions& optio
         return end.kind == EndKind::escape && end.fraction > 0;
     });
     if (escapes && std::isnan(options.escape_gap) && setup.plant.static_force(setup.escape_gap) < 0) {
-        region.remarks.push_back(
-            {core::Problem::Severity::warning,
-             "escape is counted where a motion passes " + core::format_number(1e3 * setup.escape_gap, 5) +
-                 " mm, the upper end of tables and map, but the force there pulls the vehicle back: many of "
-                 "these motions return. A larger escape gap, or a map to larger gaps, follows them",
-             {}});
+        region.escapes_return = core::Problem{
+            core::Problem::Severity::warning,
+            "escape is counted where a motion passes " + core::format_number(1e3 * setup.escape_gap, 5) +
+                " mm, the upper end of tables and map, but the force there pulls the vehicle back: many of "
+                "these motions return. A larger escape gap, or a map to larger gaps, follows them",
+            {}};
+        region.remarks.push_back(*region.escapes_return);
     }
 }
 

@@ -86,6 +86,8 @@ struct StabilityRegion {
     std::string rule;  ///< how the end of an attractor's starts was decided
     Conditions held;
     core::Problems remarks;
+    /// Among the remarks: motions counted as escapes are pulled back; nothing where none is.
+    std::optional<core::Problem> escapes_return;
     std::vector<double> flow_x, flow_y, flow_dx, flow_dy;  ///< arrows of the motion, SI
 
     [[nodiscard]] double fraction(const std::string& class_name) const;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "surrogates/dynamics/basin/region.h"
 #include "surrogates/dynamics/basin/region_parts.h"
@@ -35,12 +36,14 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     // All draws share the bounds of the declared model: a drawn table has the same range.
     double sum = 0, squares = 0;
     std::string range;
+    std::optional<core::Problem> escapes_return;
     for (std::size_t draw = 0; draw < draws; ++draw) {
         progress.check();
         progress.report(static_cast<double>(draw) / static_cast<double>(draws), "drawing force tables");
         const StabilityRegion region = stability_region(drawn_model(model, seed, draw), each, progress);
         map.path_outside_fraction += region.path_outside_fraction / static_cast<double>(draws);
         range = table_range_text(region.table_lower, region.table_upper, region.pitch_lower, region.pitch_upper);
+        escapes_return = escapes_return ? escapes_return : region.escapes_return;
         for (std::size_t i = 0; i < region.index.size(); ++i) {
             const bool back = region.classes[static_cast<std::size_t>(region.index[i])].kind == EndKind::attractor;
             map.safe[i] += back ? 1.0F : 0.0F;
@@ -54,6 +57,9 @@ ProbabilityMap probability_map(const Model& model, const RegionOptions& options,
     }
     take_mean(map, sum, squares);
     add_path_remark(map.remarks, map.path_outside_fraction, range);
+    if (escapes_return) {
+        map.remarks.push_back(*escapes_return);
+    }
     if (map.area_sigma == 0) {
         map.remarks.push_back(
             {core::Problem::Severity::note, "the force tables carry no error, or none that matters here", {}});

@@ -218,7 +218,8 @@ const core::FileFormat& model_format() {
                "what the input did between its samples"},
               {"input_force_factor", "1", "-1", "1",
                "input that acted over the logged one: -1 for a sign turned round"},
-              {"input_force_advance", "s", "\"0.1 s\"", "0", "the logged input comes so long after it acted"},
+              {"input_force_advance", "s", "\"0.1 s\"", "0",
+               "the logged input comes so long after it acted; below zero (a part of a sample): before it"},
               {"heave_velocity_factor", "1", "-1", "1", "heave velocity over the logged one"}}});
         made.tables.push_back(
             {"lineage",

@@ -279,8 +279,10 @@ RecordReading read_records(const core::TomlTable& table) {
     factor("heave_velocity_factor", records.velocity_factor);
     if (table.has("input_force_advance")) {
         records.input_advance = table.quantity("input_force_advance", "s");
-        if (!(records.input_advance >= 0) || records.input_advance > 30) {
-            throw core::InputError("range", "records.input_force_advance must lie between 0 and 30 s",
+        // Below zero: a log that stamps an input within the sample before it acts; discovery finds such parts of a
+        // sample.
+        if (!(records.input_advance >= -1) || records.input_advance > 30) {
+            throw core::InputError("range", "records.input_force_advance must lie between -1 and 30 s",
                                    table.place("input_force_advance"),
                                    "an input that acts later than it was logged is the effect input_delay");
         }

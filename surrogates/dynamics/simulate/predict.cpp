@@ -576,6 +576,14 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
         }
         throw;
     }
+    for (ChannelError& channel : prediction.channels) {
+        const auto declared = data.declared_noise(channel.name);
+        if (declared && unit_of_errors(declared, channel.noise) == *declared) {
+            channel.noise = *declared;
+            channel.noise_declared = true;
+            channel.in_noise = channel.rmse / *declared;
+        }
+    }
     if (!steady) {
         const core::Problems unsaid = taken_as_zero(prediction.motion, model, data);
         before.insert(before.end(), unsaid.begin(), unsaid.end());

@@ -111,8 +111,18 @@ double sensor_noise(std::span<const double> time, std::span<const double> values
     return std::isnan(scatter) ? scatter : std::max(scatter, reading_step(values) / std::sqrt(12.0));
 }
 
+namespace {
+
+constexpr double lower = 0.88, upper = 1.14;  // of the declared figure: what it allows
+
+}  // namespace
+
+double unit_of_errors(std::optional<double> declared, double found) {
+    return declared && !(found >= upper * *declared) ? *declared : found;
+}
+
 JudgedNoise judged_noise(const std::string& channel, std::optional<double> declared, double estimated) {
-    constexpr double least = 1e-6, lower = 0.88, upper = 1.14;  // m or m/s; of the declared figure
+    constexpr double least = 1e-6;  // m or m/s
     if (!declared || !(estimated > 0)) {
         return {declared.value_or(estimated > 0 ? estimated : least), declared ? "declared" : "estimated", ""};
     }
@@ -127,7 +137,11 @@ JudgedNoise judged_noise(const std::string& channel, std::optional<double> decla
                 " times the declared figure",
             "the declared noise of " + channel + " (" + core::told(*declared, unit, 3) +
                 ") disagrees with the scatter from reading to reading (" + core::told(estimated, unit, 3) +
-                "): the figure is wrong or the noise is coloured; the scatter is used"};
+                "): the figure is " +
+                (ratio < 1 ? "too large or the noise is coloured; the scatter is used where readings are weighed, and "
+                             "errors are told "
+                             "in the declared figure"
+                           : "wrong; the scatter is used")};
 }
 
 }  // namespace underbody::dynamics

@@ -35,4 +35,9 @@ struct JudgedNoise {
 /// `estimated`: the middle of sensor_noise() of the runs; not above 0: it is not known.
 JudgedNoise judged_noise(const std::string& channel, std::optional<double> declared, double estimated);
 
+/// What errors of a channel are told in, its unit: the declared deviation of one reading unless what was `found` is
+/// larger than it allows. Coloured noise scatters less from reading to reading than it is large, so that less says
+/// nothing against it.
+double unit_of_errors(std::optional<double> declared, double found);
+
 }  // namespace underbody::dynamics

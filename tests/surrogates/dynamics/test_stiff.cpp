@@ -213,6 +213,33 @@ TEST(Stiff, AModelSaysHowItsLogsAreRead) {
     EXPECT_EQ(read_model(folder.path() / "twice.toml").records, model.records);
 }
 
+/// Half a sample is how a log was written: discovery writes it into the model, which was refused when it was below
+/// zero.
+TEST(Stiff, ALogStampedWithinTheSampleBeforeIsReadBack) {
+    Model model = test::spring_model(1.0, 4, 0.5, 0);
+    const InputSignals inputs = rocking(40, 0.02, 0, 0.2);
+    const MeasuredRun run = measured(model, "run", inputs, 0.12, 2e-5, 6);
+    Measurements data;
+    MeasuredRun logged;
+    logged.name = "run";
+    logged.table.add_numbers("time", "s", run.table.numbers("time"));
+    logged.table.add_numbers("gap", "m", run.table.numbers("gap"));
+    std::vector<double> values(inputs.time.size());  // what acts 0.3 s later stands in each row
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = inputs.signals[0].values[std::min(i + 15, values.size() - 1)];
+    }
+    logged.table.add_numbers("input_force", "N", values);
+    data.runs.push_back(logged);
+    EXPECT_GT(predict(model, data).channels[0].in_noise, 50);
+    const core::TemporaryFolder folder;
+    model.records.input_advance = -0.3;
+    model.records.input_between = RecordReading::Between::held;
+    write_model(model, folder.path() / "model.toml");
+    const Model again = read_model(folder.path() / "model.toml");
+    EXPECT_EQ(again.records, model.records);
+    EXPECT_LT(predict(again, data).channels[0].in_noise, 1.5);
+}
+
 }  // namespace
 
 }  // namespace underbody::dynamics
