@@ -98,7 +98,9 @@ private:
             std::string gaps;
             for (const auto& point : table->equilibria) {
                 if (point.stable) {
-                    gaps += (gaps.empty() ? "" : ", ") + shown(point.gap, "m", "mm", 2) + "\u00a0mm";
+                    gaps += (gaps.empty() ? "" : ", ") + shown(point.gap, "m", "mm", 2) + "\u00a0mm" +
+                            (point.doubtful() ? " (with probability " + core::format_number(point.probability, 2) + ")"
+                                              : "");
                 }
             }
             facts.push_back({gaps.empty() ? "none" : gaps, "stable gaps by '" + spec.name + "' at a net weight of " +
@@ -259,13 +261,20 @@ private:
                             point.frequency_sigma > 0 ? shown(point.frequency_sigma, "Hz", "Hz", 2) : "-",
                             point.stable ? shown(point.kick_velocity, "m/s", "mm/s") : "-"});
         }
+        std::vector<std::string> header = {"gap (mm)", "± (mm)",         "kind",   "stiffness (N/m)",
+                                           "± (N/m)",  "frequency (Hz)", "± (Hz)", "largest kick survived (mm/s)"};
+        if (std::any_of(table.equilibria.begin(), table.equilibria.end(), [](const auto& p) { return p.doubtful(); })) {
+            header.emplace_back("exists with probability");
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+                const EquilibriumResult& point = table.equilibria[i];
+                rows[i].push_back(point.doubtful() ? core::format_number(point.probability, 2) : "> 0.995");
+            }
+        }
         if (rows.empty()) {
             page_.paragraph("No equilibrium in the table at a net weight of " + shown(net_weight, "N", "N") + " N.");
             return;
         }
-        page_.table({"gap (mm)", "± (mm)", "kind", "stiffness (N/m)", "± (N/m)", "frequency (Hz)", "± (Hz)",
-                     "largest kick survived (mm/s)"},
-                    rows,
+        page_.table(header, rows,
                     "Where lift balances a net weight of " + shown(net_weight, "N", "N") +
                         " N. The kick is the upward or downward velocity from which the body still comes back.");
     }

@@ -23,6 +23,7 @@ EquilibriumResult equilibrium(const json& point) {
     one.frequency = frequency_in_hertz(point);
     one.frequency_sigma = frequency_in_hertz(point, "frequency_sigma");
     one.kick_velocity = number(point.value("kick_velocity", json()));
+    one.probability = number(point.value("probability", json()));
     return one;
 }
 

@@ -21,6 +21,9 @@ struct EquilibriumResult {
     double frequency = std::numeric_limits<double>::quiet_NaN();        ///< Hz
     double frequency_sigma = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not known
     double kick_velocity = std::numeric_limits<double>::quiet_NaN();    ///< m/s
+    double probability = std::numeric_limits<double>::quiet_NaN();      ///< that there is one; NaN: not known
+    /// Not so sure that it could pass in silence.
+    [[nodiscard]] bool doubtful() const { return probability < 0.995; }
 };
 
 /// A [[table]].

@@ -144,6 +144,7 @@ void of_equilibrium(const json& point, Facts& facts) {
     const std::string name = facts.numbered(point.value("stable", false) ? "stable gap" : "unstable gap");
     facts.member(point, "gap", name, "m");
     facts.member(point, "sigma", "standard deviation of the " + name, "m");
+    facts.member(point, "probability", "probability that there is the " + name, "1");
     facts.member(point, "stiffness", "stiffness at the " + name, "N/m");
     facts.member(point, "stiffness_sigma", "standard deviation of the stiffness at the " + name, "N/m");
     if (point.value("stable", false)) {

@@ -357,6 +357,18 @@ void ForcePanel::list_equilibria(tables::EquilibriumOptions options) {
     at_once ? at_rest_->stop() : at_rest_->start();
 }
 
+namespace {
+
+/// What takes from its number.
+QString doubts_of(const tables::Equilibrium& one) {
+    const QString range = one.limited_by_range ? "limited by the range of the table" : "";
+    return one.probability && *one.probability < 0.995
+               ? "exists with probability " + number(*one.probability, 2) + (range.isEmpty() ? "" : "; " + range)
+               : range;
+}
+
+}  // namespace
+
 void ForcePanel::show_equilibria(const tables::Equilibria& found) {
     if (found.all.empty()) {
         reach_->setText(
@@ -377,7 +389,7 @@ void ForcePanel::show_equilibria(const tables::Equilibria& found) {
                                    moves ? number(one.frequency, 3) : "–",
                                    error(one.frequency_sigma),
                                    moves ? number(1000 * one.kick_velocity, 3) : "–",
-                                   one.limited_by_range ? "limited by the range of the table" : ""};
+                                   doubts_of(one)};
         for (int column = 0; column < cells.size(); ++column) {
             auto* item = new QTableWidgetItem(cells[column]);
             item->setTextAlignment(column == 2 || column == 8 ? Qt::AlignLeft | Qt::AlignVCenter

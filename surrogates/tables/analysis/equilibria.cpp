@@ -271,6 +271,13 @@ Equilibria equilibria(const ForceTable& table, const EquilibriumOptions& options
         point[axis] = gap;
         return AtBalance{std::abs(options.scale) * table.sigma(point.data()), options.virtual_mass, options.damping};
     });
+    if (options.draws > 0 && table.kind() == "exported grid" && !result.all.empty() && result.all.front().sigma > 0) {
+        result.remarks.push_back(
+            {core::Problem::Severity::warning,
+             "an exported table keeps the error of each value, not which errors go together: those of "
+             "stiffness and frequency come out too small here; take them from its points",
+             {table.source(), {}, {}, {}}});
+    }
     if (options.draws > 0) {
         fill_from_draws(result, table, axis, point, options);
     }

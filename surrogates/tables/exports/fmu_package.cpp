@@ -5,8 +5,8 @@
 #include <sys/wait.h>
 
 #include "core/file.h"
-#include "core/inputs.h"
 #include "core/hash.h"
+#include "core/inputs.h"
 #include "surrogates/tables/exports/zip.h"
 
 extern char** environ;

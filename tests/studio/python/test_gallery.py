@@ -116,7 +116,10 @@ def test_equilibria_and_the_film(evie, loads_with_errors, table, variant, weight
         if one["stable"]:
             assert shows(row["frequency (Hz)"], one["frequency"], 3)
             assert shows(row["largest kick survived (mm/s)"], 1e3 * one["kick_velocity"], 3)
-    stable = [f"{1e3 * one['gap']:.2g}\u00a0mm" for one in found if one["stable"]]
+        if one["probability"] < 0.995:
+            assert shows(row["exists with probability"], one["probability"], 2)
+    doubt = lambda one: f" (with probability {one['probability']:.2g})" if one["probability"] < 0.995 else ""
+    stable = [f"{1e3 * one['gap']:.2g}\u00a0mm{doubt(one)}" for one in found if one["stable"]]
     assert page.facts[f"stable gaps by '{table}' at a net weight of {weight:g} N"] == ", ".join(stable)
     if table == "lift":
         base = results["body/ellipse"]["elliptic_base"]

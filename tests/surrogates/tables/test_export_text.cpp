@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "surrogates/tables/analysis/equilibria.h"
 #include "surrogates/tables/fit/table_batch.h"
 #include "tests/surrogates/tables/exports_support.h"
 #include "tests/surrogates/tables/json_evaluator.h"
@@ -36,6 +37,27 @@ void check_read_back(const std::string& format) {
                                                        e.at.sigma, e.at.outside, e.at.no_data));
         }
     }
+}
+
+bool says_errors_go_apart(const ForceTable& table) {
+    tables::EquilibriumOptions options;
+    options.net_weight = 0.3;
+    options.draws = 20;
+    const auto all = tables::equilibria(table, options).remarks;
+    return std::any_of(all.begin(), all.end(), [](const core::Problem& remark) {
+        return remark.message.find("not which errors go together") != std::string::npos;
+    });
+}
+
+/// A file of values has their errors, not their correlation: what rests on differences of values is told so.
+TEST(ExportsOfText, StiffnessOfATableReadBackIsSaidToHaveTooSmallAnError) {
+    core::TemporaryFolder folder;
+    const std::string text =
+        "gap [mm], lift_force [N], lift_force_sigma [N]\n1, 0.8, 0.01\n5, 0.5, 0.01\n9, 0.1, 0.01\n";
+    const ForceTable table = ForceTable::fit(core::read_csv(std::string_view(text), "made"), "lift_force");
+    EXPECT_FALSE(says_errors_go_apart(table));
+    export_table(table, "csv", folder.path() / "t.csv", {});
+    EXPECT_TRUE(says_errors_go_apart(ForceTable::read(folder.path() / "t.csv", "lift_force")));
 }
 
 TEST(ExportsOfText, OfCsvReadBackAsTheSameTable) { check_read_back("csv"); }
