@@ -115,6 +115,7 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     auto* area = new QScrollArea;
     area->setWidgetResizable(true);
     area->setFrameShape(QFrame::NoFrame);
+    area->setMinimumHeight(170);  // some rows, also on a laptop
     auto* inside = new QWidget;
     parameter_column_ = new QVBoxLayout(inside);
     parameter_column_->setContentsMargins(0, 0, 6, 0);
@@ -155,7 +156,9 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     for (const int whole : {0, 1}) {  // in bold, too
         card_->horizontalHeader()->setSectionResizeMode(whole, QHeaderView::ResizeToContents);
     }
-    card_->setVerticalScrollBarPolicy(Qt::ScrollBarAlwaysOff);  // as high as its rows: show_card
+    card_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);  // as high as its rows, where there is room
+    card_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+    card_->setMinimumHeight(160);
     side.addWidget(card_);
     state_label_ = new QLabel;
     state_label_->setWordWrap(true);

@@ -119,7 +119,8 @@ void DesignPanel::show_card() {
         }
     }
     const auto* rows = card_->verticalHeader();
-    card_->setFixedHeight(card_->horizontalHeader()->sizeHint().height() + rows->length() + 2 * card_->frameWidth());
+    card_->setMaximumHeight(card_->horizontalHeader()->sizeHint().height() + rows->length() + 2 * card_->frameWidth());
+    card_->updateGeometry();
     if (!shown_) {
         return;
     }
