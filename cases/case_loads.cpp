@@ -42,7 +42,7 @@ std::map<std::string, double> known_errors(const Study& study, const StudyResult
     };
     take(results.loads);
     for (const auto& spec : study.tables) {
-        if (spec.quantity != quantity || results.loads.rows() == 0) {
+        if (spec.quantity != quantity || !has_loads(spec, results)) {
             continue;
         }
         try {

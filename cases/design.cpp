@@ -22,77 +22,6 @@ using tables::SearchVariable;
 
 namespace {
 
-std::string numbered(std::size_t index) {
-    const std::string digits = std::to_string(index + 1);
-    return "design-" + std::string(digits.size() < 3 ? 3 - digits.size() : 0, '0') + digits;
-}
-
-const std::vector<double>& numbers_of(const core::Table& table, const SearchVariable& v) {
-    const core::Column* column = table.find(v.name);
-    if (column == nullptr) {
-        throw core::InputError("column", table.source + " has no column '" + v.name + "', which [design] varies", {},
-                               "set the file aside, or vary what it holds");
-    }
-    return table.numbers(v.name);
-}
-
-std::vector<std::string> names_of(const core::Table& table) {
-    std::vector<std::string> names;
-    for (const core::Column& column : table.columns()) {
-        names.push_back(column.name);
-    }
-    return names;
-}
-
-std::vector<std::string> text_or(const core::Table& table, const std::string& name, const std::string& fallback) {
-    return table.find(name) != nullptr ? table.text(name) : std::vector<std::string>(table.rows(), fallback);
-}
-
-std::vector<PlannedDesign> read_plan(const DesignSpec& spec, const core::Table& table) {
-    const std::string& file = table.source;
-    std::vector<PlannedDesign> plan(table.rows());
-    const auto names = table.text("design");
-    const auto fidelities = text_or(table, "fidelity", spec.fidelities.front().name);
-    const auto whys = text_or(table, "why", "typed");
-    const auto states = text_or(table, "state", "planned");
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-        plan[i] = {names[i], {}, fidelities[i], whys[i], states[i]};
-        (void)level_of(spec, fidelities[i], file + " row " + std::to_string(i + 1));
-    }
-    for (const SearchVariable& v : spec.variables) {
-        const auto& values = numbers_of(table, v);
-        for (std::size_t i = 0; i < plan.size(); ++i) {
-            plan[i].at.push_back(values[i]);
-        }
-    }
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (plan[i].name == plan[j].name && (plan[i].fidelity == plan[j].fidelity || plan[i].at != plan[j].at)) {
-                throw core::InputError("duplicate", "the design " + plan[i].name + " stands twice",
-                                       table.place(i, "design"), "a name of its own for each");
-            }
-        }
-    }
-    return plan;
-}
-
-/// One of the files in shapes, which follow plan.csv and the shape of [design].
-void write_shape_file(const fs::path& file, const std::string& text) {
-    if (fs::exists(file) && core::read_file(file) == text) {
-        return;
-    }
-    fs::create_directories(file.parent_path());
-    try {
-        core::write_file(file, text);
-    } catch (const core::InputError&) {
-        throw core::InputError("exists",
-                               "the shape of this design is another one now (the shape of [design] or plan.csv has "
-                               "changed), and this file was copied or changed by hand",
-                               {file.string(), {}, {}, {}},
-                               "remove " + file.parent_path().string() + ": its files are made anew");
-    }
-}
-
 /// At the same place, equal but for the rounding of a file.
 bool same_place(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
     for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -241,7 +170,7 @@ Design Design::open(const Study& study) {
     }
     const fs::path plan = design.spec_.folder / "plan.csv", results = design.spec_.folder / "results.csv";
     if (fs::exists(plan)) {
-        design.plan_ = read_plan(design.spec_, design.plan_file_.read(plan, names_of(design.plan_table())));
+        design.read_plan(plan);
     }
     if (fs::exists(results)) {
         design.read_results(results);
@@ -279,73 +208,6 @@ void Design::note_unsettled() {
                                                                            : " have not settled: they are left out"),
                          {(spec_.folder / "results.csv").string(), {}, {}, {}}});
     }
-}
-
-std::size_t Design::make_plan(core::Progress& progress) {
-    const std::size_t axes = spec_.variables.size();
-    std::size_t had = 0;
-    for (const PlannedDesign& design : plan_) {
-        had += design.why == "plan" ? 1 : 0;
-    }
-    if (had >= spec_.points) {
-        return 0;
-    }
-    // A hypercube cannot be continued: what is missing is a hypercube of its own.
-    const std::size_t count = spec_.points - had;
-    const tables::Plan points = spec_.plan == "sobol" ? tables::sobol_plan(count, axes, spec_.seed, had)
-                                                      : tables::latin_hypercube(count, axes, spec_.seed + had);
-    for (const std::vector<double>& u : points) {
-        progress.check();
-        PlannedDesign design{numbered(plan_.size()), {}, spec_.fidelities.front().name, "plan", "planned"};
-        for (std::size_t v = 0; v < axes; ++v) {
-            design.at.push_back(spec_.variables[v].unscaled(u[v]));
-        }
-        try {
-            // What is known without a run costs none.
-            const std::string fault = volume_fault(spec_, shape_at(design.at));
-            if (!fault.empty()) {
-                design.state = one_field(fault);
-            }
-        } catch (const core::InputError&) {
-            // No possible shape: its state says so when the shapes are written.
-        }
-        plan_.push_back(std::move(design));
-    }
-    write_plan();
-    return count;
-}
-
-void Design::add(const std::vector<tables::Candidate>& candidates, const std::string& why) {
-    for (const tables::Candidate& c : candidates) {
-        plan_.push_back({numbered(plan_.size()), c.at,
-                         spec_.fidelities.at(std::min(c.level, spec_.fidelities.size() - 1)).name, one_field(why),
-                         "planned"});
-    }
-    write_plan();
-}
-
-void Design::write_plan() {
-    write_shapes();
-    fs::create_directories(spec_.folder);
-    plan_file_.write(spec_.folder / "plan.csv", plan_table());
-}
-
-bool Design::write_shapes() {
-    bool refused = false;
-    for (PlannedDesign& design : plan_) {
-        std::string text;
-        try {
-            geometry::BodyShape shape = shape_at(design.at);
-            shape.name = design.name;
-            text = geometry::write_shape(shape);
-        } catch (const core::InputError& error) {
-            refused = refused || design.state == "planned";
-            design.state = one_field(error.message() + (error.hint().empty() ? "" : "; " + error.hint()));
-            continue;
-        }
-        write_shape_file(spec_.folder / "shapes" / (design.name + ".toml"), text);
-    }
-    return refused;
 }
 
 DesignRun* Design::find(const DesignRun& run) {
@@ -396,30 +258,6 @@ void Design::note_unknown_sigmas() {
                              {(spec_.folder / "results.csv").string(), {}, {}, {}}});
         }
     }
-}
-
-core::Table Design::plan_table() const {
-    core::Table table;
-    std::vector<std::string> names, fidelities, whys, states;
-    for (const PlannedDesign& d : plan_) {
-        names.push_back(d.name);
-        fidelities.push_back(d.fidelity);
-        whys.push_back(d.why);
-        states.push_back(d.state);
-    }
-    table.add_text("design", names);
-    for (std::size_t v = 0; v < spec_.variables.size(); ++v) {
-        std::vector<double> values;
-        for (const PlannedDesign& d : plan_) {
-            values.push_back(d.at[v]);
-        }
-        table.add_numbers(spec_.variables[v].name, spec_.variables[v].unit, values,
-                          geometry::shown_unit(spec_.variables[v].unit));
-    }
-    table.add_text("fidelity", fidelities);
-    table.add_text("why", whys);
-    table.add_text("state", states);
-    return table;
 }
 
 core::Table Design::results_table(std::size_t first) const {

@@ -3,7 +3,7 @@
 // solver can be put in:
 //
 // - plan.csv: one row a design, with its name, the varied numbers, fidelity, why it was taken, "planned" or why it
-//   cannot be.
+//   cannot be; of one that a search chose also NAME_predicted and its sigma, of each objective and limit.
 // - shapes/NAME.toml: the shape of each.
 // - runs/FIDELITY/: the cases of OpenFOAM.
 // - results.csv: one row a run, with design, varied numbers, conditions, fidelity, water, hash of the shape that was
@@ -34,6 +34,9 @@ struct PlannedDesign {
     std::string fidelity;
     std::string why;    ///< "plan", "expected improvement ...", "typed"
     std::string state;  ///< "planned", or why there is no such shape
+    /// By response: what the surrogates said when a search chose it, before it was computed. Empty for others.
+    std::map<std::string, tables::ResponseValue> predicted;
+    std::string predicted_of;  ///< Design::what_is_asked() at that time
 };
 
 /// Of what a run is beside its varied numbers. What is not known is not there.
@@ -76,8 +79,12 @@ public:
     /// Adds the first plan's designs that are not there yet (`points` of [design]; the sequence goes on where it was),
     /// writes their shapes and plan.csv. Returns how many are new.
     std::size_t make_plan(core::Progress& progress = core::Progress::none());
-    /// Adds designs that a search chose.
-    void add(const std::vector<tables::Candidate>& candidates, const std::string& why);
+    /// Adds designs that a search chose, with what it predicts of them. One that is planned or computed on that
+    /// fidelity already is not added again. Returns the names of all of them, in their order.
+    std::vector<std::string> add(const std::vector<tables::Candidate>& candidates, const std::string& why);
+    /// Adds the best designs on the finest fidelity, whatever the surrogates learned from: what they say there is a
+    /// prediction, and this asks for its proof (verified_designs).
+    std::vector<std::string> add_for_proof(std::vector<tables::Candidate> best);
     /// Solves what is planned and has no result with OpenFOAM here, `jobs` at a time, and reads loads into results.csv.
     /// A case that fails is kept as failed with its reason and the others go on; one whose loads have not settled is
     /// kept as "not settled". results.csv grows after each case. Rows that are there without a case in runs/FIDELITY
@@ -85,7 +92,10 @@ public:
     /// when results.csv was changed meanwhile.
     void solve(const Study& study, int jobs, core::Progress& progress = core::Progress::none());
 
-    /// A surrogate a quantity. Throws core::InputError when there are too few runs.
+    /// Throws core::InputError when there are too few runs, or [design] does not compute the quantity.
+    [[nodiscard]] tables::Surrogate surrogate(const std::string& quantity,
+                                              core::Progress& progress = core::Progress::none()) const;
+    /// One a quantity.
     [[nodiscard]] std::map<std::string, tables::Surrogate> surrogates(
         core::Progress& progress = core::Progress::none()) const;
     /// The search that [design] asks for. Throws core::InputError without an objective.
@@ -100,11 +110,17 @@ public:
     /// Indices of a quantity over the shape's variables and the conditions, of the surrogate's mean.
     [[nodiscard]] tables::SobolIndices sensitivity(const tables::Surrogate& surrogate) const;
 
+    /// Hash of the shape that is varied and of the definitions of objectives and limits: a prediction of others is no
+    /// prediction of these.
+    [[nodiscard]] std::string what_is_asked() const;
+
     [[nodiscard]] core::Table plan_table() const;
     [[nodiscard]] core::Table results_table(std::size_t first = 0) const;
 
 private:
+    void read_plan(const std::filesystem::path& file);
     void write_plan();
+    void add_predictions(core::Table& table) const;
     bool write_shapes();  ///< true where a planned one turns out to be no shape
     [[nodiscard]] DesignRun* find(const DesignRun& run);
     void keep(const DesignRun& run);

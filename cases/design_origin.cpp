@@ -48,22 +48,6 @@ std::optional<geometry::BodyShape> shape_in(const CaseRecord& record) {
     }
 }
 
-/// Hash of what is varied, whatever the varied numbers are: they stand in columns of their own, rounded by whoever
-/// wrote them.
-std::string hash_of_base(const DesignSpec& spec, geometry::BodyShape shape) {
-    try {
-        for (const SearchVariable& v : spec.variables) {
-            geometry::set_parameter(shape, v.name, "0.5");
-        }
-        for (const geometry::Tie& tie : spec.ties) {
-            geometry::apply(tie, shape);
-        }
-        return geometry::shape_hash(shape).substr(0, 12);
-    } catch (const core::InputError&) {
-        return {};
-    }
-}
-
 bool same_number(double a, double b) { return std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b)) + 1e-12; }
 
 bool same_shape(const RunOrigin& a, const RunOrigin& b) {
@@ -242,6 +226,21 @@ private:
 };
 
 }  // namespace
+
+// The varied numbers stand in columns of their own, rounded by whoever wrote them.
+std::string hash_of_base(const DesignSpec& spec, geometry::BodyShape shape) {
+    try {
+        for (const SearchVariable& v : spec.variables) {
+            geometry::set_parameter(shape, v.name, "0.5");
+        }
+        for (const geometry::Tie& tie : spec.ties) {
+            geometry::apply(tie, shape);
+        }
+        return geometry::shape_hash(shape).substr(0, 12);
+    } catch (const core::InputError&) {
+        return {};
+    }
+}
 
 std::vector<OriginNumber> origin_columns(const DesignSpec& spec) {
     const auto all = spec.all_variables();

@@ -18,6 +18,8 @@ std::vector<OriginNumber> origin_columns(const DesignSpec& spec);
 
 /// Of a case that is made of a shape of the search.
 RunOrigin origin_of(const DesignSpec& spec, const geometry::BodyShape& base, const CaseRecord& record);
+/// Of what is varied, whatever the varied numbers are. Empty where there is no such shape.
+std::string hash_of_base(const DesignSpec& spec, geometry::BodyShape shape);
 /// Both say the same of what both say.
 bool agree(const RunOrigin& a, const RunOrigin& b);
 

@@ -4,6 +4,7 @@
 
 #include "cases/design.h"
 #include "cases/design_figures.h"
+#include "cases/design_proof.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/told.h"
@@ -182,6 +183,36 @@ void add_search(const Sources& from, Surrogates surrogates) {
     }
 }
 
+/// What was predicted of the designs that a search chose, beside what their runs say.
+void add_proofs(const Sources& from) {
+    const auto& [design, renderer, page, progress] = from;
+    const std::vector<ProofOfDesign> all = proofs(design);
+    if (all.empty()) {
+        return;
+    }
+    page.section("Prediction beside result");
+    std::vector<std::vector<std::string>> rows;
+    for (const ProofOfDesign& proof : all) {
+        if (!proof.note.empty()) {
+            rows.push_back({proof.design, proof.fidelity, proof.why, "", "", proof.note, ""});
+        }
+        for (const ProofOfResponse& one : proof.responses) {
+            const double apart = one.difference_in_sigmas();
+            rows.push_back({proof.design, proof.fidelity, proof.why, one.name,
+                            core::told(one.predicted.value, one.predicted.sigma, one.unit, 4),
+                            one.computed ? core::told(one.computed->value, one.computed->sigma, one.unit, 4)
+                                         : "its runs do not tell it",
+                            std::isfinite(apart) ? core::format_number(std::abs(apart), 2) : ""});
+        }
+    }
+    page.table({"design", "mesh", "why", "of", "predicted", "computed", "standard deviations apart"}, rows,
+               "Designs that a search chose: what the surrogates said before they were computed, and what their own "
+               "runs say, linear between these where an objective or a limit lies between them. The prediction is of "
+               "the finest mesh that the surrogates had learned from: beside runs on a finer one the difference holds "
+               "the error of the mesh as well.");
+    pictures(page, renderer, proof_figures(all));
+}
+
 }  // namespace
 
 std::string design_report(const Design& design, const FigureRenderer& renderer, core::Progress& progress) {
@@ -189,6 +220,7 @@ std::string design_report(const Design& design, const FigureRenderer& renderer, 
     const Sources from{design, renderer, page, progress};
     add_facts(from);
     add_plan(from);
+    add_proofs(from);
     Surrogates surrogates;
     try {
         surrogates = design.surrogates(progress);

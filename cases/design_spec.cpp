@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "geometry/body/exact_body.h"
 #include "geometry/body/variants.h"
+#include "geometry/water/placement.h"
 #include "surrogates/tables/search/sampling.h"
 
 namespace underbody::cases {
@@ -417,14 +418,30 @@ geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& 
     return shape;
 }
 
+namespace {
+
+/// Of the condition at which it comes nearest to the ground: how far it stands below it, over that gap.
+double below_ground(const DesignSpec& spec, const geometry::BodyShape& shape) {
+    double worst = -1;
+    for (const double gap : spec.gaps) {
+        for (const double pitch : spec.pitches) {
+            worst = std::max(worst, -geometry::clearance_of_base(shape, gap, pitch) / gap);
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
 double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at) {
     try {
         const geometry::BodyShape shape = shape_at(spec, base, at);
+        double worst = below_ground(spec, shape);
         if (!limits_volume(spec)) {
-            return -1;
+            return worst;
         }
         const double volume = geometry::ExactBody(shape).volume();
-        double worst = core::is_limit(spec.most_volume) ? volume / spec.most_volume - 1 : -1;
+        worst = std::max(worst, core::is_limit(spec.most_volume) ? volume / spec.most_volume - 1 : -1);
         if (spec.least_volume > 0) {
             worst = std::max(worst, 1 - volume / spec.least_volume);
         }
@@ -432,6 +449,31 @@ double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::s
     } catch (const core::InputError&) {
         return 1;
     }
+}
+
+std::vector<tables::Response> DesignSpec::responses() const {
+    std::vector<tables::Response> all;
+    const auto take = [&](const tables::Response& response) {
+        if (std::none_of(all.begin(), all.end(), [&](const auto& known) { return known.name == response.name; })) {
+            all.push_back(response);
+        }
+    };
+    for (const auto& objective : objectives) {
+        take(objective.response);
+    }
+    for (const auto& limit : limits) {
+        take(limit.response);
+    }
+    return all;
+}
+
+std::string response_unit(const tables::Response& response) {
+    const std::string unit = core::find_quantity(response.quantity)->unit;
+    if (response.slope_along.empty()) {
+        return unit;
+    }
+    const auto* along = core::find_quantity(response.slope_along);
+    return along == nullptr || along->unit == "1" ? unit : unit + "/" + along->unit;
 }
 
 }  // namespace underbody::cases

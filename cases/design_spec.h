@@ -41,7 +41,12 @@ struct DesignSpec {
 
     /// Variables of the surrogates: those of the shape, then the conditions that take several values.
     [[nodiscard]] std::vector<tables::SearchVariable> all_variables() const;
+    /// Of objectives, then of limits; one that is both stands once.
+    [[nodiscard]] std::vector<tables::Response> responses() const;
 };
+
+/// The SI unit of a response: a slope's is that of the quantity over that of the condition.
+std::string response_unit(const tables::Response& response);
 
 /// Throws core::InputError with file and line: an unknown number of the shape, an empty range, an objective without a
 /// quantity that is computed, a fidelity twice.
@@ -58,7 +63,8 @@ std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const 
 /// The shape at a design, its ties drawn. Throws core::InputError where there is no such shape.
 geometry::BodyShape shape_at(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at);
 
-/// > 0 where a limit on the geometry is broken, by how much (in units of the limit); 1 where there is no such shape.
+/// > 0 where a limit on the geometry is broken, by how much (in units of the limit): [design.volume], or that the body
+/// stands clear of the ground at every gap and pitch of [design]; 1 where there is no such shape.
 double broken_by(const DesignSpec& spec, const geometry::BodyShape& base, std::span<const double> at);
 
 }  // namespace underbody::cases

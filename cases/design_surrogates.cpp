@@ -12,7 +12,11 @@ namespace underbody::cases {
 
 using tables::SearchVariable;
 
-std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {
+tables::Surrogate Design::surrogate(const std::string& quantity, core::Progress& progress) const {
+    if (std::find(spec_.quantities.begin(), spec_.quantities.end(), quantity) == spec_.quantities.end()) {
+        throw core::InputError("name", "[design] does not compute " + quantity, {},
+                               core::did_you_mean(quantity, spec_.quantities));
+    }
     if (std::none_of(runs_.begin(), runs_.end(), [](const DesignRun& run) { return run.usable(); })) {
         throw core::InputError("missing",
                                runs_.empty() ? "nothing has been computed yet"
@@ -22,29 +26,32 @@ std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& prog
                                "'underbody design plan' and 'design run', or rows of another solver; 'state' says what "
                                "failed");
     }
+    std::map<std::string, std::vector<double>> stated;  // by fidelity
+    for (const DesignRun& run : runs_) {
+        if (run.usable() && run.sigmas.contains(quantity)) {
+            stated[run.fidelity].push_back(run.sigmas.at(quantity));
+        }
+    }
+    const auto usual = [&](const std::string& fidelity) {
+        std::vector<double>& sigmas = stated[fidelity];
+        std::sort(sigmas.begin(), sigmas.end());
+        return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
+    };
+    std::vector<tables::SearchRun> runs;
+    for (const DesignRun& run : runs_) {
+        const auto load = run.loads.find(quantity), sigma = run.sigmas.find(quantity);
+        if (run.usable() && load != run.loads.end()) {
+            runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second,
+                            sigma == run.sigmas.end() ? usual(run.fidelity) : sigma->second});
+        }
+    }
+    return tables::Surrogate::fit(quantity, core::find_quantity(quantity)->unit, spec_.all_variables(), runs, progress);
+}
+
+std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {
     std::map<std::string, tables::Surrogate> result;
     for (const std::string& q : spec_.quantities) {
-        std::vector<tables::SearchRun> runs;
-        std::map<std::string, std::vector<double>> stated;  // by fidelity
-        for (const DesignRun& run : runs_) {
-            if (run.usable() && run.sigmas.contains(q)) {
-                stated[run.fidelity].push_back(run.sigmas.at(q));
-            }
-        }
-        const auto usual = [&](const std::string& fidelity) {
-            std::vector<double>& sigmas = stated[fidelity];
-            std::sort(sigmas.begin(), sigmas.end());
-            return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
-        };
-        for (const DesignRun& run : runs_) {
-            const auto load = run.loads.find(q), sigma = run.sigmas.find(q);
-            if (run.usable() && load != run.loads.end()) {
-                runs.push_back({run.at, level_of(spec_, run.fidelity, run.design), load->second,
-                                sigma == run.sigmas.end() ? usual(run.fidelity) : sigma->second});
-            }
-        }
-        result.emplace(q,
-                       tables::Surrogate::fit(q, core::find_quantity(q)->unit, spec_.all_variables(), runs, progress));
+        result.emplace(q, surrogate(q, progress));
     }
     return result;
 }

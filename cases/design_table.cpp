@@ -15,6 +15,27 @@ namespace underbody::cases {
 
 namespace fs = std::filesystem;
 
+std::vector<std::string> names_of(const core::Table& table) {
+    std::vector<std::string> names;
+    for (const core::Column& column : table.columns()) {
+        names.push_back(column.name);
+    }
+    return names;
+}
+
+std::vector<std::string> text_or(const core::Table& table, const std::string& name, const std::string& fallback) {
+    return table.find(name) != nullptr ? table.text(name) : std::vector<std::string>(table.rows(), fallback);
+}
+
+const std::vector<double>& numbers_of(const core::Table& table, const tables::SearchVariable& v) {
+    const core::Column* column = table.find(v.name);
+    if (column == nullptr) {
+        throw core::InputError("column", table.source + " has no column '" + v.name + "', which [design] varies", {},
+                               "set the file aside, or vary what it holds");
+    }
+    return table.numbers(v.name);
+}
+
 DesignTable::Stamp DesignTable::stamp_of(const fs::path& file) {
     std::error_code none;
     Stamp stamp;

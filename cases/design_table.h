@@ -7,8 +7,16 @@
 #include <vector>
 
 #include "core/table.h"
+#include "surrogates/tables/search/surrogate.h"
 
 namespace underbody::cases {
+
+/// The names of its columns.
+std::vector<std::string> names_of(const core::Table& table);
+/// A column of text; `fallback` in every row where the table has none of that name.
+std::vector<std::string> text_or(const core::Table& table, const std::string& name, const std::string& fallback);
+/// The column of a variable. Throws core::InputError where the table has none.
+const std::vector<double>& numbers_of(const core::Table& table, const tables::SearchVariable& variable);
 
 /// One file. Columns and comments that the program does not know stay as they are; a file that somebody changed after
 /// it was read is not written over.

@@ -372,6 +372,7 @@ constexpr Stage stages[] = {
     {0.25, "pictures", run_pictures},
     {0.40, "mesh uncertainty", run_meshes},
     {0.42, "verification", run_verifications},
+    {0.44, "loads of shapes", run_shape_loads},
     {0.45, "force tables", run_tables},
     {0.55, "comparison", run_comparisons},
     {0.60, "stability maps", run_regions},

@@ -212,6 +212,7 @@ void run_loads(Engine& engine);          // step_loads.cpp: and the table of the
 void run_pictures(Engine& engine);       // step_pictures.cpp
 void run_meshes(Engine& engine);         // step_meshes.cpp
 void run_verifications(Engine& engine);  // step_verify.cpp
+void run_shape_loads(Engine& engine);    // step_shape_loads.cpp
 void run_tables(Engine& engine);         // step_tables.cpp
 void run_comparisons(Engine& engine);    // step_tables.cpp
 void run_regions(Engine& engine);        // step_regions.cpp

@@ -14,82 +14,31 @@ namespace underbody::cases {
 
 namespace {
 
-/// How far two shapes are from each other: the sum of the differences of their parameters, each over the larger of the
-/// two; parts and words that only one has count as one.
-double distance(const geometry::BodyShape& a, const geometry::BodyShape& b) {
-    double sum = (a.base == b.base ? 0 : 1) + (a.protrusion.has_value() == b.protrusion.has_value() ? 0 : 1) +
-                 (a.nozzle.has_value() == b.nozzle.has_value() ? 0 : 1) +
-                 (a.tail_plate.has_value() == b.tail_plate.has_value() ? 0 : 1);
-    sum += a.protrusion && b.protrusion && a.protrusion->profile != b.protrusion->profile ? 1 : 0;
-    for (const auto& name : geometry::parameter_names()) {
-        if (name.unit.empty() || !geometry::has_part_of(a, name.name) || !geometry::has_part_of(b, name.name)) {
-            continue;
-        }
-        const double x = geometry::parameter(a, name.name);
-        const double y = geometry::parameter(b, name.name);
-        const double size = std::max(std::abs(x), std::abs(y));
-        sum += size > 0 && std::isfinite(size) ? std::abs(x - y) / size : 0;
-    }
-    return sum;
-}
+const std::string lift_quantity = "lift_force";
 
-/// The varied numbers of a shape when it differs from the searched one in them and their ties alone.
-std::vector<double> design_of(const LiftSurrogate& known, const geometry::BodyShape& shape) {
-    std::vector<double> at;
-    for (const auto& variable : known.spec.variables) {
-        if (!geometry::has_part_of(shape, variable.name)) {
-            return {};
-        }
-        at.push_back(geometry::parameter(shape, variable.name));
-    }
-    try {
-        // Files of shapes hold nine digits.
-        return distance(shape_at(known.spec, known.base, at), shape) < 1e-6 ? at : std::vector<double>{};
-    } catch (const core::Error&) {
-        return {};
-    }
-}
-
-KnownLift by_surrogate(const LiftSurrogate& known, std::vector<double> at) {
+KnownLift by_surrogate(const LearnedLoads& known, std::vector<double> at) {
     KnownLift lift;
     lift.basis = KnownLift::Basis::surrogate;
-    lift.shapes = known.solved.size();
-    for (const auto& solved : known.solved) {
-        bool same = true;
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            same = same && std::abs(solved[i] - at[i]) <= 1e-6 * std::max(std::abs(at[i]), 1e-9);
-        }
-        lift.run = lift.run || same;
-    }
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        const auto& variable = known.spec.variables[i];
-        if (at[i] < variable.lower || at[i] > variable.upper) {
-            lift.outside += (lift.outside.empty() ? "" : ", ") + variable.name;
-        }
-    }
+    lift.learned = surrogate_basis(known.spec, known.solved, at);
     lift.design = std::move(at);
     return lift;
 }
 
-constexpr int curve_steps = 60;  ///< of a curve over the gap
-
-/// Where the surrogate is asked for a shape.
-struct Asked {
-    std::vector<double> at;  ///< one a variable of the surrogate
-    std::size_t gap = 0;     ///< which of them is the gap; the number of variables where one gap was computed
-};
-
-Asked asked_at(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
-    const auto& variables = known.surrogate.variables();
-    Asked asked{lift.design, variables.size()};
-    for (std::size_t v = known.spec.variables.size(); v < variables.size(); ++v) {
-        asked.gap = variables[v].name == "gap" ? v : asked.gap;
-        asked.at.push_back(variables[v].name == "gap"     ? known.spec.gaps.front()
-                           : variables[v].name == "pitch" ? pitch
-                           : variables[v].name == "speed" ? speed
-                                                          : known.spec.jet.values.front());
+/// Conditions that were not varied are those of the runs.
+Conditions held_at(const LearnedLoads& known, double pitch, double speed) {
+    Conditions held;
+    held.set("pitch", pitch);
+    held.set("speed", speed);
+    if (known.spec.jet.any()) {
+        held.set(known.spec.jet.quantity, known.spec.jet.values.front());
     }
-    return asked;
+    return held;
+}
+
+/// Lift over the gap; over nothing where one gap was computed.
+core::Table lift_over_gap(const LearnedLoads& known, const KnownLift& lift, double pitch, double speed) {
+    const auto axes = known.spec.gaps.size() > 1 ? std::vector<std::string>{"gap"} : std::vector<std::string>{};
+    return surrogate_points(known.spec, lift.design, {known.find(lift_quantity)}, axes, held_at(known, pitch, speed));
 }
 
 /// The lift over the gap of one variant.
@@ -100,20 +49,18 @@ bool is_lift_of(const TableSpec& table, const NamedShape& shape) {
 
 }  // namespace
 
-std::shared_ptr<const LiftSurrogate> lift_surrogate(const Study& study, std::string& why, core::Progress& progress) {
+std::shared_ptr<const LearnedLoads> lift_surrogate(const Study& study, std::string& why, core::Progress& progress) {
     if (!study.design) {
+        return nullptr;
+    }
+    if (std::find(study.design->quantities.begin(), study.design->quantities.end(), lift_quantity) ==
+        study.design->quantities.end()) {
+        why = "[design] does not compute lift_force";
         return nullptr;
     }
     const Design design = Design::open(study);
     try {
-        auto surrogates = design.surrogates(progress);
-        const auto lift = surrogates.find("lift_force");
-        if (lift == surrogates.end()) {
-            why = "[design] does not compute lift_force";
-            return nullptr;
-        }
-        return std::make_shared<const LiftSurrogate>(LiftSurrogate{
-            design.spec(), geometry::read_shape(design.spec().shape), lift->second, design.known().solved});
+        return learned_loads(design, {lift_quantity}, progress);
     } catch (const core::InputError& error) {  // too few runs yet
         why = error.message();
         return nullptr;
@@ -126,24 +73,21 @@ std::string KnownLift::words() const {
             return "no CFD of any shape like this one is known";
         case Basis::this_shape:
             return "CFD of this shape (" + of + ")";
-        case Basis::surrogate: {
-            std::string text = "surrogate over the " + core::counted(shapes, "shape") + " of the search";
-            text += run ? ", this shape is one of them" : "; not CFD of this one";
-            return text + (outside.empty() ? "" : "; extrapolated: " + outside + " beyond the searched range");
-        }
+        case Basis::surrogate:
+            return learned.words();
         case Basis::nearest_shape:
             break;
     }
     return "CFD of " + of + ", the nearest shape; not CFD of this one";
 }
 
-KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, const LiftSurrogate* surrogate,
+KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, const LearnedLoads* surrogate,
                      const geometry::BodyShape& shape) {
     KnownLift nearest;
     double least = std::numeric_limits<double>::infinity();
     const std::string hash = geometry::shape_hash(shape);
     for (const auto& table : study.tables) {
-        if (table.quantity != "lift_force" || table.axes != std::vector<std::string>{"gap"}) {
+        if (!table.shape.empty() || table.quantity != lift_quantity || table.axes != std::vector<std::string>{"gap"}) {
             continue;
         }
         for (const NamedShape& known : shapes) {
@@ -151,7 +95,7 @@ KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, 
                 continue;
             }
             const bool exact = geometry::shape_hash(known.shape) == hash;
-            const double away = exact ? -1 : distance(known.shape, shape);
+            const double away = exact ? -1 : distance_of_shapes(known.shape, shape);
             if (away < least) {
                 least = away;
                 nearest.basis = exact ? KnownLift::Basis::this_shape : KnownLift::Basis::nearest_shape;
@@ -161,47 +105,44 @@ KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, 
         }
     }
     if (nearest.basis != KnownLift::Basis::this_shape && surrogate != nullptr) {
-        if (auto at = design_of(*surrogate, shape); !at.empty()) {
+        if (auto at = varied_numbers(surrogate->spec, surrogate->base, shape); !at.empty()) {
             return by_surrogate(*surrogate, std::move(at));
         }
     }
     return nearest;
 }
 
-core::Figure surrogate_lift_figure(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
-    const auto& variables = known.surrogate.variables();
-    auto [x, gap] = asked_at(known, lift, pitch, speed);
+core::Figure surrogate_lift_figure(const LearnedLoads& known, const KnownLift& lift, double pitch, double speed) {
     const auto given = [&](const char* name, const std::vector<double>& values, double wanted, const char* unit) {
         const double at = values.size() > 1 ? wanted : values.front();
         return std::string(name) + " " +
                core::format_number(core::convert(at, unit == std::string("deg") ? "rad" : unit, unit), 4) + " " + unit +
                (values.size() > 1 ? "" : " (the only one that was computed)");
     };
+    const core::Table points = lift_over_gap(known, lift, pitch, speed);
+    const auto [low, high] = std::minmax_element(points.numbers("gap").begin(), points.numbers("gap").end());
     core::Figure figure;
     figure.title = lift.words();
     figure.caption =
         given("pitch", known.spec.pitches, pitch, "deg") + ", " + given("speed", known.spec.speeds, speed, "m/s");
-    figure.x = {"gap", "mm", 0, 0, gap < variables.size() && variables[gap].upper > 5 * variables[gap].lower};
+    figure.x = {"gap", "mm", 0, 0, *high > 5 * *low};
     figure.y = {"lift", "N"};
     core::FigureCurve curve;
     curve.name = "surrogate";
     curve.colour = core::palette(0);
-    curve.dashed = !lift.run;
+    curve.dashed = !lift.learned.run;
     core::FigureBand band;
     band.name = "two standard deviations";
-    const bool along = gap < variables.size();
-    for (int i = 0; i <= (along ? curve_steps : 0); ++i) {
-        if (along) {
-            x[gap] = variables[gap].unscaled(i / double{curve_steps});
-        }
-        const auto p = known.surrogate.at(x);
-        curve.x.push_back(1000 * (along ? x[gap] : known.spec.gaps.front()));
-        curve.y.push_back(p.value);
-        band.lower.push_back(p.value - 2 * p.sigma);
-        band.upper.push_back(p.value + 2 * p.sigma);
+    const auto* sigma = points.find(lift_quantity + "_sigma");
+    for (std::size_t i = 0; i < points.rows(); ++i) {
+        const double value = points.numbers(lift_quantity)[i], two = sigma == nullptr ? 0 : 2 * sigma->numbers[i];
+        curve.x.push_back(1000 * points.numbers("gap")[i]);
+        curve.y.push_back(value);
+        band.lower.push_back(value - two);
+        band.upper.push_back(value + two);
     }
     band.x = curve.x;
-    if (along) {
+    if (points.rows() > 1) {
         figure.bands.push_back(band);
         figure.curves.push_back(curve);
     } else {
@@ -214,35 +155,20 @@ core::Figure surrogate_lift_figure(const LiftSurrogate& known, const KnownLift& 
     return figure;
 }
 
-tables::ForceTable surrogate_lift_table(const LiftSurrogate& known, const KnownLift& lift, double pitch, double speed) {
-    auto [x, gap] = asked_at(known, lift, pitch, speed);
-    const auto& variables = known.surrogate.variables();
-    if (gap == variables.size()) {
+tables::ForceTable surrogate_lift_table(const LearnedLoads& known, const KnownLift& lift, double pitch, double speed) {
+    core::Table points = lift_over_gap(known, lift, pitch, speed);
+    if (points.rows() == 1) {
         throw core::InputError("missing", "the search of [design] computed its shapes at one gap alone", {},
                                "give it several: gap = [\"2 mm\", \"5 mm\", \"10 mm\"]");
     }
-    std::vector<double> gaps, lifts, sigmas;
-    for (int i = 0; i <= curve_steps; ++i) {
-        x[gap] = variables[gap].unscaled(i / double{curve_steps});
-        const auto p = known.surrogate.at(x);
-        gaps.push_back(x[gap]);
-        lifts.push_back(p.value);
-        sigmas.push_back(p.sigma);
-    }
-    core::Table points;
     points.source = lift.words();
-    points.add_numbers("gap", "m", gaps);
-    points.add_numbers("lift_force", "N", lifts);
-    if (*std::min_element(sigmas.begin(), sigmas.end()) > 0) {
-        points.add_numbers("lift_force_sigma", "N", sigmas);
-    }
     tables::FitOptions options;
     options.axes = {"gap"};
     options.kind = tables::FitOptions::Kind::interpolation;
-    return tables::ForceTable::fit(points, "lift_force", options);
+    return tables::ForceTable::fit(points, lift_quantity, options);
 }
 
-double surrogate_speed(const LiftSurrogate& known, double speed) {
+double surrogate_speed(const LearnedLoads& known, double speed) {
     return known.spec.speeds.size() > 1 ? speed : known.spec.speeds.front();
 }
 

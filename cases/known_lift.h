@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "cases/design_spec.h"
+#include "cases/shape_loads.h"
 #include "cases/study.h"
 #include "core/figure.h"
 #include "core/progress.h"
 #include "geometry/body/body_shape.h"
 #include "surrogates/tables/fit/force_table.h"
-#include "surrogates/tables/search/surrogate.h"
 
 namespace underbody::cases {
 
@@ -24,18 +23,10 @@ struct NamedShape {
     geometry::BodyShape shape;
 };
 
-/// The surrogate of lift over the shapes of [design].
-struct LiftSurrogate {
-    DesignSpec spec;
-    geometry::BodyShape base;
-    tables::Surrogate surrogate;
-    std::vector<std::vector<double>> solved;  ///< SI, numbers of the shapes that were run
-};
-
-/// Empty for a study without [design], and where it has too few runs or none with lift; `why` says so then.
-/// Throws core::InputError as Design::open.
-std::shared_ptr<const LiftSurrogate> lift_surrogate(const Study& study, std::string& why,
-                                                    core::Progress& progress = core::Progress::none());
+/// Of the lift alone. Empty for a study without [design], and where it has too few runs or none with lift; `why` says
+/// so then. Throws core::InputError as Design::open.
+std::shared_ptr<const LearnedLoads> lift_surrogate(const Study& study, std::string& why,
+                                                   core::Progress& progress = core::Progress::none());
 
 struct KnownLift {
     enum class Basis { nothing, this_shape, surrogate, nearest_shape };
@@ -43,27 +34,25 @@ struct KnownLift {
     const TableSpec* table = nullptr;  ///< of this or of the nearest shape; of the study that was asked
     std::string of;                    ///< name of the shape that the table is of
     std::vector<double> design;        ///< SI: the varied numbers of the shape, for the surrogate
-    std::size_t shapes = 0;            ///< that the surrogate learned from
-    bool run = false;                  ///< this shape is one of them
-    std::string outside;               ///< varied numbers beyond the range that was searched
+    SurrogateBasis learned;            ///< of a surrogate
 
     /// "CFD of ellipse, the nearest shape; not CFD of this one"
     [[nodiscard]] std::string words() const;
 };
 
 /// `shapes`: those that the study's tables may be of (`where = { variant = NAME }`). `surrogate` may be nullptr.
-KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, const LiftSurrogate* surrogate,
+KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, const LearnedLoads* surrogate,
                      const geometry::BodyShape& shape);
 
 /// Lift over the gap at a pitch (rad) and speed (m/s) for `known.design`, with a band of two standard deviations; one
 /// point when one gap was computed. Conditions that were not varied are those of the runs: the caption says them.
-core::Figure surrogate_lift_figure(const LiftSurrogate& surrogate, const KnownLift& known, double pitch, double speed);
+core::Figure surrogate_lift_figure(const LearnedLoads& surrogate, const KnownLift& known, double pitch, double speed);
 
 /// The same curve as a table over the gap, its errors one standard deviation. Throws core::InputError (missing) when
 /// one gap was computed.
-tables::ForceTable surrogate_lift_table(const LiftSurrogate& surrogate, const KnownLift& known, double pitch,
+tables::ForceTable surrogate_lift_table(const LearnedLoads& surrogate, const KnownLift& known, double pitch,
                                         double speed);
 /// The speed that a curve of the surrogate is at, m/s: `speed` where several were computed, else that of the runs.
-double surrogate_speed(const LiftSurrogate& surrogate, double speed);
+double surrogate_speed(const LearnedLoads& surrogate, double speed);
 
 }  // namespace underbody::cases

@@ -70,7 +70,8 @@ std::map<std::string, double> load_errors(const Study& study, const StudyResults
                                           const std::string& quantity) {
     std::map<std::string, double> errors;
     for (const auto& spec : study.tables) {
-        const TableResult* table = spec.quantity == quantity ? find_result(results.tables, spec.name) : nullptr;
+        const bool of_cases = spec.quantity == quantity && spec.shape.empty();
+        const TableResult* table = of_cases ? find_result(results.tables, spec.name) : nullptr;
         if (table == nullptr) {
             continue;
         }
@@ -134,7 +135,8 @@ std::string which_error(const Study& study, const StudyResults& results, const s
     std::string names;
     bool differ = false;
     for (const auto& spec : study.tables) {
-        const TableResult* table = spec.quantity == quantity ? find_result(results.tables, spec.name) : nullptr;
+        const bool of_cases = spec.quantity == quantity && spec.shape.empty();
+        const TableResult* table = of_cases ? find_result(results.tables, spec.name) : nullptr;
         const core::Column* sigma = table == nullptr ? nullptr : table->points.find(quantity + "_sigma");
         if (sigma == nullptr) {
             continue;

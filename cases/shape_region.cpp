@@ -28,7 +28,7 @@ struct LiftSource {
     std::optional<double> speed;
 };
 
-LiftSource lift_source(const StudyResults& results, const ShapeRegion& asked, const LiftSurrogate* surrogate) {
+LiftSource lift_source(const StudyResults& results, const ShapeRegion& asked, const LearnedLoads* surrogate) {
     const auto made = [](tables::ForceTable table) {
         return dynamics::ForceSource{lift_quantity, {}, {}, std::move(table), {dynamics::Channel::gap}, {}};
     };
@@ -81,7 +81,7 @@ RegionSpec vehicle_of(const Study& study, const std::string& region) {
 }
 
 dynamics::Model shape_model(const Study& study, const StudyResults& results, const ShapeRegion& asked,
-                            const LiftSurrogate* surrogate) {
+                            const LearnedLoads* surrogate) {
     LiftSource lift = lift_source(results, asked, surrogate);
     dynamics::Model model = region_model(study, asked.vehicle, results);
     // Before anything is replaced: the names of changed numbers count the forces as they were.

@@ -31,7 +31,7 @@ RegionSpec vehicle_of(const Study& study, const std::string& region = {});
 /// needed where the lift rests on it. Throws core::InputError: no lift is known or its loads are missing, one gap
 /// alone, a wrong model.
 dynamics::Model shape_model(const Study& study, const StudyResults& results, const ShapeRegion& asked,
-                            const LiftSurrogate* surrogate);
+                            const LearnedLoads* surrogate);
 
 /// Gap and heave velocity as the vehicle's region has them, else all gaps of the lift and 0.05 m/s either way; coarse,
 /// for a map that follows a hand.

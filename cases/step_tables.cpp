@@ -32,8 +32,12 @@ Key table_key(const std::string& kind, const TableSpec& spec, const core::Table&
     for (const auto& axis : spec.axes) {
         key.add("axis", axis);
     }
-    for (const auto& name : points.text("case")) {
-        key.through("loads", name);
+    if (!spec.shape.empty()) {
+        key.through("shape loads", spec.name);
+    } else {
+        for (const auto& name : points.text("case")) {
+            key.through("loads", name);
+        }
     }
     if (!spec.mesh_uncertainty.empty()) {
         key.through("mesh", spec.mesh_uncertainty);
@@ -174,7 +178,10 @@ void run_table(Engine& engine, const TableSpec& spec) {
     }
     SharedTable table(engine.states(), [&] { return fitted(spec, points); });
     Key key = table_key("table", spec, points);
-    auto mixed = mixed_conditions(spec, engine.results);
+    auto mixed = basis_of(spec, engine.results);
+    for (auto& remark : mixed_conditions(spec, engine.results)) {
+        mixed.push_back(std::move(remark));
+    }
     for (auto& doubt : doubts_of_mesh(spec, engine.results)) {
         mixed.push_back(std::move(doubt));
     }

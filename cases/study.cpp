@@ -9,6 +9,7 @@
 #include "cases/case_names.h"
 #include "cases/design_points.h"
 #include "cases/percent.h"
+#include "cases/shape_loads.h"
 #include "cases/study_format.h"
 #include "cases/sweep.h"
 #include "cases/sweep_slurm.h"
@@ -269,6 +270,29 @@ bool cancelled_by_halves(const Study& study, const std::string& quantity) {
            (quantity == "side_force" || quantity == "roll_moment" || quantity == "yaw_moment");
 }
 
+/// A table of a shape that has no cases of its own.
+void read_shape_table(const TomlTable& table, TableSpec& spec, const Study& study) {
+    spec.shape = table.file("shape");
+    if (!study.design) {
+        throw core::InputError("missing", "the table '" + spec.name + "' is of a shape, and the study has no [design]",
+                               table.place("shape"), "surrogates over shapes are learned by the search of [design]");
+    }
+    if (!spec.mesh_uncertainty.empty()) {
+        throw core::InputError("name", "the table '" + spec.name + "' is of a shape: its errors are the surrogate's",
+                               table.place("mesh_uncertainty"), "relative_sigma adds to them");
+    }
+    if (!spec.where.texts.empty()) {
+        throw core::InputError("name", spec.where.texts.front().first + " is no condition of [design]",
+                               table.place("where"), "where = { pitch = 0 }");
+    }
+    try {
+        check_asked(*study.design, {{spec.quantity}, spec.axes, spec.where});
+    } catch (const core::InputError& error) {
+        throw core::InputError(error.kind(), "table '" + spec.name + "': " + error.message(), table.place(),
+                               error.hint());
+    }
+}
+
 TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, Study& study) {
     TableSpec spec;
     spec.name = unique_name(table, taken);
@@ -291,7 +315,9 @@ TableSpec read_table(const TomlTable& table, std::set<std::string>& taken, Study
     spec.net_weight = table.find_quantity("net_weight", "N");
     spec.virtual_mass = table.quantity_or("virtual_mass", "kg", 0);
     spec.exports = table.strings("exports");
-    if (study.select(spec.where).empty()) {
+    if (table.has("shape")) {
+        read_shape_table(table, spec, study);
+    } else if (study.select(spec.where).empty()) {
         throw core::InputError("missing", "no case fits 'where' of the table '" + spec.name + "'", table.place("where"),
                                "underbody study list shows the cases and their conditions");
     }

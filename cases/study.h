@@ -136,7 +136,8 @@ struct StudyResults {
     std::vector<StepResult> steps;
     std::vector<CaseLoads> case_loads;  ///< one a case, in the order of the study
     core::Table loads;                  ///< one row a case that has loads: conditions, forces, moments, closure
-    std::vector<TableResult> tables;    ///< one a step that gave one; likewise the others
+    std::vector<std::pair<std::string, core::Table>> shape_loads;  ///< points by [[table]] of a shape
+    std::vector<TableResult> tables;                               ///< one a step that gave one; likewise the others
     std::vector<MeshResult> meshes;
     std::vector<RegionResult> regions;
     std::vector<VerifyResult> verifications;
@@ -183,9 +184,15 @@ std::vector<std::string> table_quantities(const Study& study);
 /// conditions that all of them share, `case` and `settled`; and `QUANTITY_sigma` where an error is known of any point:
 /// the standard uncertainty of the mesh study that the table names, the relative error that it states and the case's
 /// own scatter from iteration to iteration (postproc::Settled), added in squares; empty (NaN) for a point of which none
-/// is known. Throws core::InputError (missing): there are no loads, no case fits, a case lacks an axis or the quantity,
-/// the mesh study failed or does not cover the quantity.
+/// is known. Of a table of a shape: the points that the surrogates gave, with their errors, and no `case`. Throws
+/// core::InputError (missing): there are no loads, no case fits, a case lacks an axis or the quantity, the mesh study
+/// failed or does not cover the quantity.
 core::Table table_points(const TableSpec& spec, const StudyResults& results);
+/// What a [[table]] is made of is there: loads of cases, or those of its shape.
+bool has_loads(const TableSpec& spec, const StudyResults& results);
+/// Of a table of a shape what its points rest on: "loads of 'x' by a surrogate over the 28 shapes of the search; not
+/// CFD of this one", then how the surrogate does on shapes left out. Empty for a table of cases.
+std::vector<std::string> basis_of(const TableSpec& spec, const StudyResults& results);
 /// Smallest and largest value that a condition has in the cases of a table; nothing when none states it.
 std::optional<std::pair<double, double>> range_in_cases(const TableSpec& spec, const StudyResults& results,
                                                         const std::string& condition);

@@ -165,6 +165,9 @@ std::vector<FileTable> results() {
          {name_key("\"lift\""),
           {"quantity", loads_in_words(), "\"lift_force\"", "", "the load"},
           {"axes", "list of texts", "[\"gap\"]", "", "conditions that are its axes"},
+          {"shape", "file", "\"shapes/evie.toml\"", "none: of cases",
+           "SHAPE.toml of the family of [design]: its loads by the surrogates, no cases of its own; where says the "
+           "conditions that are no axis"},
           {"fit", "automatic | interpolation | gaussian_process | spline", "\"automatic\"", "automatic",
            "how values between the points are found, here, in its exports and in maps"},
           {"speed_exponent", "1", "2", "2",

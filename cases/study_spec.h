@@ -57,6 +57,8 @@ struct TableSpec {
     std::string quantity;           ///< lift_force, ...
     std::vector<std::string> axes;  ///< gap, pitch, ...
     Conditions where;
+    std::filesystem::path shape;    ///< loads of this shape by the surrogates of [design], not of cases; `where` holds
+                                    ///< conditions that are no axis. Empty: of cases
     std::string fit = "automatic";  ///< how the table is fitted (tables::fit_kind), here, in its exports and in the
                                     ///< maps of [[region]]
     double speed_exponent =

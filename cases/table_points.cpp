@@ -62,6 +62,9 @@ bool row_fits(const core::Table& loads, std::size_t row, const Conditions& where
 
 std::vector<std::size_t> rows_of(const TableSpec& spec, const core::Table& loads) {
     std::vector<std::size_t> rows;
+    if (!spec.shape.empty()) {
+        return rows;  // of no case
+    }
     for (std::size_t row = 0; row < loads.rows(); ++row) {
         if (row_fits(loads, row, spec.where)) {
             rows.push_back(row);
@@ -140,10 +143,46 @@ tables::FitOptions fit_options(const TableSpec& spec) {
     tables::FitOptions options;
     options.axes = spec.axes;
     options.kind = tables::fit_kind(spec.fit).value_or(tables::FitOptions::Kind::automatic);
+    if (!spec.shape.empty() && options.kind == tables::FitOptions::Kind::automatic) {
+        options.kind = tables::FitOptions::Kind::interpolation;  // the surrogate is smooth: nothing scatters
+    }
     return options;
 }
 
+namespace {
+
+const core::Table* loads_of_shape(const TableSpec& spec, const StudyResults& results) {
+    const auto found = std::find_if(results.shape_loads.begin(), results.shape_loads.end(),
+                                    [&](const auto& one) { return one.first == spec.name; });
+    return found == results.shape_loads.end() ? nullptr : &found->second;
+}
+
+core::Table points_of_shape(const TableSpec& spec, const StudyResults& results) {
+    const core::Table* found = loads_of_shape(spec, results);
+    if (found == nullptr) {
+        throw core::InputError("missing", "the loads of the shape of the table '" + spec.name + "' are not there", {},
+                               "run the study: underbody study run; where that failed, see why its step did");
+    }
+    core::Table points = *found;
+    points.source = "table '" + spec.name + "'";
+    return points;
+}
+
+}  // namespace
+
+bool has_loads(const TableSpec& spec, const StudyResults& results) {
+    return spec.shape.empty() ? results.loads.rows() > 0 : loads_of_shape(spec, results) != nullptr;
+}
+
+std::vector<std::string> basis_of(const TableSpec& spec, const StudyResults& results) {
+    const core::Table* found = spec.shape.empty() ? nullptr : loads_of_shape(spec, results);
+    return found == nullptr ? std::vector<std::string>() : found->comments;
+}
+
 core::Table table_points(const TableSpec& spec, const StudyResults& results) {
+    if (!spec.shape.empty()) {
+        return points_of_shape(spec, results);
+    }
     const core::Table& loads = results.loads;
     if (loads.rows() == 0) {
         throw core::InputError("missing", "there are no loads yet", {}, "run the study first: underbody study run");

@@ -330,7 +330,7 @@ void of_residual(const json& document, Facts& facts) {
 
 std::vector<Fact> facts_of(const std::string& kind, const std::string& value, const std::filesystem::path& folder) {
     Facts facts;
-    if (kind == "export" || kind == "model") {  // files: they say themselves what they hold
+    if (kind == "export" || kind == "model" || kind == "shape loads") {  // files: they say themselves what they hold
         return {};
     }
     const bool head_alone = kind == "figure" || kind.ends_with("picture");  // a picture stands behind it

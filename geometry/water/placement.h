@@ -8,6 +8,7 @@
 
 #include "core/figure.h"
 #include "core/table.h"
+#include "geometry/body/body_shape.h"
 #include "geometry/mesh/surface_mesh.h"
 
 namespace underbody::geometry {
@@ -30,6 +31,11 @@ struct Clearance {
     std::string patch;    ///< of a triangle that has it
 };
 Clearance clearance(const SurfaceMesh& body, const Placement& placement);
+
+/// Height of the lowest point of base, lower hull in the plane of symmetry, protrusion and tail plate over the ground,
+/// without a mesh, at a pitch and no roll; m, negative below the ground. Within 0.1 mm of `clearance` (which has no
+/// tail plate). The shape must have passed `check`.
+double clearance_of_base(const BodyShape& shape, double gap, double pitch);
 
 /// The angles, about the centre of the base at a gap, at which the body first touches the ground; nothing when it does
 /// not within 60 degrees. rad.

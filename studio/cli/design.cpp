@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/design_figures.h"
+#include "cases/design_proof.h"
+#include "cases/shape_loads.h"
 #include "core/counted.h"
 #include "core/file.h"
 #include "core/no_limit.h"
@@ -26,6 +28,7 @@ using nlohmann::json;
 
 struct Arguments {
     std::string study;
+    std::string shape, quantity, axes, where;
     int jobs = 1;
     std::size_t count = 1;
     bool learn = false;
@@ -153,8 +156,14 @@ int run(Shell& shell, const Arguments& a) {
         }
     }
     const std::string file = (design.spec().folder / "results.csv").string();
+    json proved = json::array();
+    for (const auto& proof : cases::proofs(design)) {
+        proved.push_back(proof);
+        text += cases::proof_text(proof);
+    }
     if (shell.json) {
-        shell.print_json({{"results", file}, {"runs", all}, {"usable", good}, {"failed", failed}});
+        shell.print_json(
+            {{"results", file}, {"runs", all}, {"usable", good}, {"failed", failed}, {"predicted", proved}});
     }
     shell.print(text + file + ": " + std::to_string(good) + " of " + core::counted(all, "run") + " can be used\n");
     return computed == 0 && all > 0 ? wrong_input : done;  // not one case gave loads
@@ -217,7 +226,7 @@ int next(Shell& shell, const Arguments& a) {
                 " the limits that are known without a run.\n";
     }
     if (a.add && !designs.empty()) {
-        design.add(designs, a.learn ? "largest drop of the error" : "expected improvement");
+        (void)design.add(designs, a.learn ? "largest drop of the error" : "expected improvement");
         text += "added to " + (design.spec().folder / "plan.csv").string() + "\n";
     }
     if (shell.json) {
@@ -256,12 +265,14 @@ std::string what_excludes(const tables::DesignSearch& search,
         list.push_back(std::move(one));
     }
     return text + (each             ? "  Each can be met alone, but not all at once.\n"
-                   : limits.empty() ? "  No shape meets the limits that are known without a run ([design.volume]).\n"
+                   : limits.empty() ? "  No shape meets the limits that are known without a run ([design.volume], and "
+                                      "clear of the ground at every gap and "
+                                      "pitch of [design]).\n"
                                     : "");
 }
 
 int optimise(Shell& shell, const Arguments& a) {
-    const cases::Design design = open(shell, a);
+    cases::Design design = open(shell, a);
     const auto surrogates = design.surrogates(shell.progress());
     const tables::DesignSearch search = design.search(surrogates);
     const auto best = search.optimum(a.sigmas, design.spec().seed, shell.progress());
@@ -284,16 +295,32 @@ int optimise(Shell& shell, const Arguments& a) {
         list.push_back(json_of(search, design.spec(), c));
         text += "front:\n" + text_of(search, c);
     }
+    std::vector<tables::Candidate> found = front;
+    if (front.empty() && best) {
+        found.push_back(*best);
+    }
     if (!a.out.empty()) {
-        std::vector<tables::Candidate> all = front;
-        if (front.empty() && best) {
-            all.push_back(*best);
+        core::write_csv(a.out, tables::table(search, found));
+    }
+    json added = json::array();
+    if (a.add && !found.empty()) {
+        const std::size_t before = design.plan().size();
+        const auto names = design.add_for_proof(found);
+        added = names;
+        std::string all;
+        for (const std::string& name : names) {
+            all += (all.empty() ? "" : ", ") + name;
         }
-        core::write_csv(a.out, tables::table(search, all));
+        const std::size_t fresh = design.plan().size() - before;
+        text += core::counted(fresh, "design") + " added to " + (design.spec().folder / "plan.csv").string() + " on " +
+                design.spec().fidelities.back().name + " (" + all + ")" +
+                (fresh < names.size() ? ", the others stand there already" : "") +
+                "; `design run` computes them, `design report` has prediction beside result\n";
     }
     if (shell.json) {
         shell.print_json({{"best", best ? json_of(search, design.spec(), *best) : json()},
                           {"front", list},
+                          {"added", added},
                           {"limits", excluded},
                           {"notes", notes_json(design)}});
     }
@@ -340,6 +367,63 @@ int sensitivity(Shell& shell, const Arguments& a) {
     return done;
 }
 
+std::vector<std::string> list_of(const std::string& text) {
+    std::vector<std::string> names;
+    for (const auto part : core::split(text, ',')) {
+        if (!core::trimmed(part).empty()) {
+            names.emplace_back(core::trimmed(part));
+        }
+    }
+    return names;
+}
+
+/// A design of the plan by its name, else a file.
+geometry::BodyShape shape_asked(const cases::Design& design, const std::string& what) {
+    std::vector<std::string> names;
+    for (const auto& planned : design.plan()) {
+        if (planned.name == what) {
+            geometry::BodyShape shape = design.shape_at(planned.at);
+            shape.name = planned.name;
+            return shape;
+        }
+        names.push_back(planned.name);
+    }
+    if (!std::filesystem::exists(what) && !what.ends_with(".toml")) {
+        throw core::InputError("name", "there is no design '" + what + "' in the plan, and no such file", {},
+                               core::did_you_mean(what, names));
+    }
+    return geometry::read_shape(what);
+}
+
+int table(Shell& shell, const Arguments& a) {
+    Shell::will_write(a.out);
+    const cases::Design design = open(shell, a);
+    cases::AskedPoints asked{list_of(a.quantity), list_of(a.axes),
+                             a.where.empty() ? cases::Conditions() : cases::conditions_from(a.where)};
+    cases::check_asked(design.spec(), asked);
+    const geometry::BodyShape shape = shape_asked(design, a.shape);
+    const auto known = cases::learned_loads(design, asked.quantities, shell.progress());
+    const core::Table points = cases::shape_points(*known, shape, asked);
+    core::write_csv(a.out, points);
+    std::string text;
+    for (const auto& line : points.comments) {
+        text += line + "\n";
+    }
+    if (shell.json) {
+        json quantities = json::array();
+        for (const auto& one : known->surrogates) {
+            quantities.push_back(one.quantity());
+        }
+        shell.print_json({{"table", a.out},
+                          {"points", points.rows()},
+                          {"quantities", quantities},
+                          {"rests_on", points.comments},
+                          {"notes", notes_json(design)}});
+    }
+    shell.print(text + a.out + ": " + core::counted(points.rows(), "point") + "\n");
+    return done;
+}
+
 int report(Shell& shell, const Arguments& a) {
     const std::string file =
         a.out.empty() ? (cases::Study::open(a.study).folder() / "report" / "design.html").string() : a.out;
@@ -363,16 +447,19 @@ void add_design_command(CLI::App& app, Shell& shell) {
     command->require_subcommand(1);
     auto a = std::make_shared<Arguments>();
     const auto step = [&](const char* name, const char* what, int (*action)(Shell&, const Arguments&),
-                          const std::string& more = "") {
+                          const std::string& examples = "") {
         CLI::App* sub = command->add_subcommand(name, what);
-        sub->footer("Examples:\n  underbody design " + std::string(name) + " cases/evie-pitch\n" + more);
+        sub->footer("Examples:\n" +
+                    (examples.empty() ? "  underbody design " + std::string(name) + " cases/evie-pitch\n" : examples));
         sub->add_option("study", a->study, "folder with study.toml, which has a [design]")->required();
         shell.on(sub, [action, a, &shell] { return action(shell, *a); });
         return sub;
     };
     step("plan", "the first designs, into plan.csv and shapes", plan,
+         "  underbody design plan cases/evie-pitch\n"
          "Designs can be typed into design/plan.csv as well; `design run` makes their shapes.\n");
     step("run", "computes what is planned and has no result, by OpenFOAM", run,
+         "  underbody design run cases/evie-pitch\n"
          "  underbody design run cases/evie-pitch --jobs 2\n"
          "Exit code 3 when not one case of results.csv gave loads.\n")
         ->add_option("--jobs", a->jobs, "cases at a time, each on one core")
@@ -380,6 +467,7 @@ void add_design_command(CLI::App& app, Shell& shell) {
         ->capture_default_str();
     step("fit", "surrogates of the loads, checked on shapes left out", fit);
     CLI::App* more = step("next", "what to compute next, and what it is worth", next,
+                          "  underbody design next cases/evie-pitch\n"
                           "  underbody design next cases/evie-pitch --count 2 --add\n"
                           "  underbody design next cases/evie-pitch --learn\n"
                           "Planned designs without a result count as run with what is predicted there.\n");
@@ -389,15 +477,35 @@ void add_design_command(CLI::App& app, Shell& shell) {
     more->add_flag("--learn", a->learn, "where the error of the first objective falls most, not where it improves");
     more->add_flag("--add", a->add, "into the plan, to be run");
     CLI::App* best = step("optimise", "the best design by the surrogates, and fronts of several objectives", optimise,
+                          "  underbody design optimise cases/evie-pitch\n"
                           "  underbody design optimise cases/evie-pitch --sigmas 2 --out best.csv\n"
-                          "  underbody design optimise cases/evie-pitch --front 10\n");
+                          "  underbody design optimise cases/evie-pitch --front 10\n"
+                          "  underbody design optimise cases/evie-pitch --sigmas 0.2 --add      to be proved by CFD\n");
     best->add_option("--sigmas", a->sigmas, "limits are met by so many standard deviations")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     best->add_option("--front", a->front, "designs of the front of all objectives")->capture_default_str();
     best->add_option("--out", a->out, "CSV of the designs found");
+    best->add_flag("--add", a->add,
+                   "the best, or with --front these, into the plan on the finest mesh, with what is predicted of them");
+    CLI::App* loads =
+        step("table", "loads of one shape by the surrogates, as a force table", table,
+             "  underbody design table cases/evie-pitch spread-03 --where pitch=0 --out loads.csv\n"
+             "  underbody design table cases/evie-pitch my-shape.toml --quantity lift_force --axes gap,pitch "
+             "--out lift.csv\n"
+             "table, export and a model's [[force]] take it as they take a table of CFD cases. In a study a\n"
+             "[[table]] with shape = \"my-shape.toml\" is the same, for its report, exports and maps.\n");
+    loads->add_option("shape", a->shape, "a design of the plan, or SHAPE.toml that differs in the varied numbers alone")
+        ->required();
+    loads->add_option("--quantity", a->quantity, "lift_force,pitch_moment ... (default: all that [design] computes)");
+    loads->add_option("--axes", a->axes,
+                      "conditions that are axes, such as gap,pitch (default: all that vary and are not held)");
+    loads->add_option("--where", a->where, "what is held, such as pitch=0,speed=0.5m/s");
+    loads->add_option("--out", a->out, "CSV of the points, with their errors")->required();
     step("sensitivity", "which variables the loads depend on: Sobol's indices", sensitivity);
-    step("report", "everything as one page", report, "  underbody design report cases/evie-pitch --out design.html\n")
+    step("report", "everything as one page", report,
+         "  underbody design report cases/evie-pitch\n"
+         "  underbody design report cases/evie-pitch --out design.html\n")
         ->add_option("--out", a->out, "HTML file (default STUDY/report/design.html)");
     command->footer(
         "Examples:\n"

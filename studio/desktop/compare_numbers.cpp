@@ -289,7 +289,8 @@ std::vector<const cases::TableSpec*> CompareNumbers::tables_of_cases() const {
         for (const auto& one : session.study.cases) {
             const bool compared_here = std::any_of(cases_.begin(), cases_.end(),
                                                    [&](const auto& shown) { return shown.id == "case/" + one.name; });
-            wanted = wanted || (chosen.size() < 2 && compared_here && one.conditions.satisfies(spec.where));
+            wanted = wanted ||
+                     (chosen.size() < 2 && compared_here && spec.shape.empty() && one.conditions.satisfies(spec.where));
         }
         const bool fits =
             spec.axes.size() == 1 &&
@@ -310,7 +311,10 @@ void CompareNumbers::ask_tables() {
     for (const auto* spec : specs) {
         key += "\n" + spec->name;
     }
-    if (specs.size() < 2 || desk_.session().results.loads.rows() == 0) {
+    const bool ready = std::all_of(specs.begin(), specs.end(), [&](const cases::TableSpec* spec) {
+        return cases::has_loads(*spec, desk_.session().results);
+    });
+    if (specs.size() < 2 || !ready) {
         tables_of_.clear();
         tables_said_->clear();
         tables_->show_text(

@@ -126,7 +126,7 @@ private:
     std::string rest_of_;  ///< key of the body that "design rest" makes
     QTimer* rest_ = nullptr;
     cases::KnownLift lift_;
-    std::shared_ptr<const cases::LiftSurrogate> surrogate_;
+    std::shared_ptr<const cases::LearnedLoads> surrogate_;
     std::string no_surrogate_;  ///< why the study's search gives none
     SessionPointer learned_;    ///< that the surrogate is of
     std::shared_ptr<const tables::ForceTable> table_;

@@ -173,7 +173,7 @@ void ForcePanel::choose_table(bool fresh) {
     if (spec == nullptr) {
         why = desk_.has_study() ? "This study has no force tables: Study > Make a table of forces (Ctrl+T)"
                                 : "Open a study with force tables";
-    } else if (session().results.loads.rows() == 0) {
+    } else if (!cases::has_loads(*spec, session().results)) {
         why = "The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)";
     }
     if (!why.isEmpty()) {
@@ -254,11 +254,13 @@ void ForcePanel::show_table() {
                      .arg(number(core::convert(axis.upper, axis.unit, unit)))
                      .arg(qt(pretty_unit(unit)));
     }
-    about_->setText(QString("<b>%1</b>, %2 through %3 points%4")
+    const auto basis = cases::basis_of(spec_, session().results);
+    about_->setText(QString("<b>%1</b>, %2 through %3 points%4%5")
                         .arg(qt(spec_.quantity).replace('_', ' '))
                         .arg(qt(table_->kind()))
                         .arg(table_->points().rows())
-                        .arg(range));
+                        .arg(range)
+                        .arg(basis.empty() ? QString() : "<br>" + html(basis.front())));
     fill_axes();
     fill_held();
     redraw();
@@ -301,7 +303,7 @@ void ForcePanel::redraw() {
 
 /// A click on a point of the table selects the case that it is of.
 void ForcePanel::point_clicked(double x, double y) {
-    if (!table_ || view().value(0) == "map" || session().results.loads.rows() == 0) {
+    if (!table_ || view().value(0) == "map" || !spec_.shape.empty() || session().results.loads.rows() == 0) {
         return;
     }
     const std::string axis = view().value(1).toStdString();

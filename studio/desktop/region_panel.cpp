@@ -239,7 +239,10 @@ void RegionPanel::draw_again(bool) {
     duration_->show_number(duration());
     fill_kinds();
     place_maps();
-    if (!spec_.forces.empty() && session().results.loads.rows() == 0) {
+    const bool ready = std::all_of(spec_.forces.begin(), spec_.forces.end(), [&](const std::string& force) {
+        return cases::has_loads(*session().study.find_table(force), session().results);
+    });
+    if (!ready) {
         say("The loads of this study are not computed yet: Study > Compute what changed (Ctrl+R)");
     } else if (other || !model_) {
         read_model();

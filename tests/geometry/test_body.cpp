@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "core/error.h"
 #include "geometry/body/body_figures.h"
@@ -128,6 +129,38 @@ TEST(Placement, NamesThePointInTheMiddleOfSeveralEquallyLow) {
     EXPECT_EQ(clear.patch, "base");
     EXPECT_EQ(clear.where_on_body, Vec3{});
     EXPECT_EQ(clear.smallest, 0.01);
+}
+
+/// Without a mesh it says what the mesh says, of every shape of the family.
+TEST(BodyClearance, OfTheBaseIsThatOfTheSurface) {
+    std::mt19937 random(7);
+    const auto in = [&](double lower, double upper) { return std::uniform_real_distribution(lower, upper)(random); };
+    int compared = 0;
+    for (int i = 0; i < 60; ++i) {
+        BodyShape shape = evie();
+        shape.base = std::array{BaseKind::ellipse, BaseKind::rectangle, BaseKind::ellipse_front}[i % 3];
+        shape.base_cut = in(0.65, 0.9);
+        shape.base_pitch = in(-0.05, 0.05);
+        shape.base_offset = in(-0.02, 0.01);
+        shape.taper = in(-0.5, 0.3);
+        shape.edge_radius = i % 2 == 0 ? 0 : in(0.5e-3, 4e-3);
+        if (i % 4 == 1) {
+            shape.protrusion = Protrusion{};
+            shape.protrusion->position = in(0.3, 0.7);
+            shape.protrusion->height = in(0.5e-3, 3e-3);
+            shape.protrusion->length = in(8e-3, 20e-3);
+        }
+        try {
+            check(shape);
+        } catch (const core::InputError&) {
+            continue;
+        }
+        const double gap = in(2e-3, 10e-3), pitch = in(-0.1, 0.1);
+        const double exact = clearance_of_base(shape, gap, pitch);
+        EXPECT_NEAR(exact, clearance(make_surface(shape), {gap, pitch, 0}).smallest, 0.1e-3) << write_shape(shape);
+        ++compared;
+    }
+    EXPECT_GT(compared, 30);
 }
 
 TEST(GapFigure, HasNoHolesUnderTheBase) {

@@ -173,6 +173,11 @@ bool only_some_effects(const FileTable& table, const FileKey& key) {
     return table.path == "effect[]" && (key.name == "quantity" || key.name == "parameter" || key.name == "table");
 }
 
+/// Of a search over several gaps: ShapeLoadsOfAStudy reads it.
+bool needs_a_search(const FileTable& table, const FileKey& key) {
+    return table.path == "table[]" && key.name == "shape";
+}
+
 TEST_P(KeysOf, AreAllReadAndTheirExamplesAreAccepted) {
     const core::TemporaryFolder scratch;
     const fs::path folder = examples_in(scratch);
@@ -180,7 +185,7 @@ TEST_P(KeysOf, AreAllReadAndTheirExamplesAreAccepted) {
     const fs::path file = folder / format.file;
     for (const FileTable& table : format.tables) {
         for (const FileKey& key : table.keys) {
-            if (only_some_effects(table, key)) {
+            if (only_some_effects(table, key) || needs_a_search(table, key)) {
                 continue;
             }
             const std::string text = document(format, table, &key, false);

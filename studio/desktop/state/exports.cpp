@@ -10,7 +10,7 @@ namespace underbody::studio {
 
 std::string table_digest(const Session& session, const std::string& table) {
     const auto* spec = session.study.find_table(table);
-    if (spec == nullptr || session.results.loads.rows() == 0) {
+    if (spec == nullptr) {
         return {};
     }
     try {
