@@ -78,7 +78,8 @@ std::string KnownLift::words() const {
         case Basis::nearest_shape:
             break;
     }
-    return "CFD of " + of + ", the nearest shape; not CFD of this one";
+    return "CFD of " + of + ", the nearest shape" + (changed_since ? ", as it was when its cases were computed" : "") +
+           "; not CFD of this one";
 }
 
 KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, const LearnedLoads* surrogate,
@@ -94,13 +95,14 @@ KnownLift known_lift(const Study& study, const std::vector<NamedShape>& shapes, 
             if (!is_lift_of(table, known)) {
                 continue;
             }
-            const bool exact = geometry::shape_hash(known.shape) == hash;
+            const bool exact = known.of_its_cases && geometry::shape_hash(known.shape) == hash;
             const double away = exact ? -1 : distance_of_shapes(known.shape, shape);
             if (away < least) {
                 least = away;
                 nearest.basis = exact ? KnownLift::Basis::this_shape : KnownLift::Basis::nearest_shape;
                 nearest.table = &table;
                 nearest.of = known.name;
+                nearest.changed_since = !known.of_its_cases;
             }
         }
     }

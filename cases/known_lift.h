@@ -21,6 +21,7 @@ struct NamedShape {
     std::string name;
     std::filesystem::path file;  ///< the word in the names of cases may be that of the file
     geometry::BodyShape shape;
+    bool of_its_cases = true;  ///< false: the files of its cases hold another body (cases/body_of_case.h)
 };
 
 /// Of the lift alone. Empty for a study without [design], and where it has too few runs or none with lift; `why` says
@@ -33,6 +34,7 @@ struct KnownLift {
     Basis basis = Basis::nothing;
     const TableSpec* table = nullptr;  ///< of this or of the nearest shape; of the study that was asked
     std::string of;                    ///< name of the shape that the table is of
+    bool changed_since = false;        ///< that shape is no longer the body of its cases
     std::vector<double> design;        ///< SI: the varied numbers of the shape, for the surrogate
     SurrogateBasis learned;            ///< of a surrogate
 

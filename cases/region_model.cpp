@@ -61,24 +61,32 @@ void remark_on_weights(dynamics::Model& model, const Study& study, const RegionS
     }
 }
 
-/// Forces grow with the density: a table of one water is not that of another.
+/// Of one water: that of the cases, or of the study.
+std::optional<std::pair<double, double>> densities_of(const Study& study, const TableSpec& table,
+                                                      const StudyResults& results) {
+    auto range = range_in_cases(table, results, "density");
+    if (const auto held = study.reference.number("density"); !range && held) {
+        range = {*held, *held};
+    }
+    return range;
+}
+
+/// Forces grow with the density: a table of several waters is not that of one. (Of one water the model's reader says
+/// it.)
 void remark_on_densities(dynamics::Model& model, const Study& study, const RegionSpec& spec,
                          const StudyResults& results) {
     for (const auto& name : spec.forces) {
         const TableSpec& table = *study.find_table(name);
-        auto range = range_in_cases(table, results, "density");
-        if (const auto held = study.reference.number("density"); !range && held) {
-            range = {*held, *held};
-        }
+        const auto range = densities_of(study, table, results);
         const double own = model.environment.density;
-        if (range && std::max(std::abs(range->first - own), std::abs(range->second - own)) > 2e-3 * own) {
-            model.remarks.push_back(
-                {core::Problem::Severity::warning,
-                 "the table '" + name + "' is of water of " + core::format_number(range->first, 6) +
-                     (range->second > range->first ? " to " + core::format_number(range->second, 6) : "") +
-                     " kg/m^3, the model's is of " + core::format_number(own, 6) +
-                     " kg/m^3: the map takes the table's forces as they are",
-                 {model.name, {}, {}, {}}});
+        if (range && range->second > range->first &&
+            std::max(std::abs(range->first - own), std::abs(range->second - own)) > 2e-3 * own) {
+            model.remarks.push_back({core::Problem::Severity::warning,
+                                     "the table '" + name + "' is of water of " + core::format_number(range->first, 6) +
+                                         " to " + core::format_number(range->second, 6) +
+                                         " kg/m^3, the model's is of " + core::format_number(own, 6) +
+                                         " kg/m^3: the map takes the table's forces as they are",
+                                     {model.name, {}, {}, {}}});
         }
     }
 }
@@ -117,6 +125,10 @@ dynamics::Model composed_model(const Study& study, const RegionSpec& spec, const
     for (std::size_t i = 0; i < spec.forces.size(); ++i) {
         const TableSpec& table = *study.find_table(spec.forces[i]);
         core::Table points = table_points(table, results);
+        if (const auto density = densities_of(study, table, results);
+            density && density->first == density->second && points.find("density") == nullptr) {
+            points.add_numbers("density", "kg/m^3", std::vector<double>(points.rows(), density->first));
+        }
         points.comments.push_back("table '" + table.name + "' of the study '" + study.title + "'; " + study.origin);
         const fs::path file = scratch / file_of(table, i);
         core::write_csv(file, points);

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "core/told.h"
 #include "geometry/body/variants.h"
+#include "surrogates/tables/points/set_points.h"
 
 namespace underbody::cases {
 
@@ -307,8 +308,10 @@ core::Table shape_points(const LearnedLoads& known, const geometry::BodyShape& s
                                "give it several: gap = [\"2 mm\", \"5 mm\", \"10 mm\"]");
     }
     core::Table points = surrogate_points(known.spec, at, of, axes, asked.held);
-    points.comments.push_back("loads of '" + shape.name + "' by a " +
-                              surrogate_basis(known.spec, known.solved, at).words());
+    const SurrogateBasis basis = surrogate_basis(known.spec, known.solved, at);
+    const bool doubtful = !basis.run || !basis.outside.empty();
+    points.comments.push_back((doubtful ? std::string(tables::warning_comment) : std::string()) + "loads of '" +
+                              shape.name + "' by a " + basis.words());
     for (const Surrogate* one : of) {
         const auto& check = one->check();
         points.comments.push_back(one->quantity() + ": on shapes left out the surrogate errs by " +

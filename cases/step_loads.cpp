@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "cases/body_of_case.h"
 #include "cases/case_loads.h"
 #include "cases/engine.h"
 #include "cases/names_in_study.h"
@@ -99,16 +100,19 @@ std::string one_line(std::string text) {
 }
 
 /// What a list of cases shows, quick to read for ten thousand of them: a line for each value (name, unit, number) and
-/// for each warning ("!", file, message), one for the verdict on the solution ("?", verdict, why), and one for the tilt
-/// of the base ("^", rad), parted by tabs.
+/// for each warning ("!", file, message), one for the verdict on the solution ("?", verdict, why), one for the tilt of
+/// the base ("^", rad) and one for the extent of the body ("#", length and height, m), parted by tabs.
 std::string brief(const std::vector<postproc::LoadsColumn>& columns, const postproc::Settled& settled,
-                  double base_pitch, const core::Problems& problems) {
+                  double base_pitch, const postproc::LoadsResult& result, const core::Problems& problems) {
     std::string text;
     for (const auto& column : columns) {
         text += column.name + "\t" + column.unit + "\t" + core::format_number(column.value) + "\n";
     }
     text += "?\t" + to_string(settled.verdict) + "\t" + one_line(settled.why) + "\n";
     text += "^\trad\t" + core::format_number(base_pitch) + "\n";
+    if (result.dimension == 3) {
+        text += "#\t" + core::format_number(result.extent[0]) + "\t" + core::format_number(result.extent[2]) + "\n";
+    }
     for (const auto& problem : problems) {
         if (problem.severity != core::Problem::Severity::note) {
             text += "!\t" + one_line(problem.place.file) + "\t" + one_line(problem.message) + "\n";
@@ -144,6 +148,9 @@ void take_brief(std::string_view text, CaseLoads& loads, bool list) {
             loads.settled_why = std::string(rest);
         } else if (name == "^") {
             loads.base_pitch = core::parse_number(rest).value_or(NAN);
+        } else if (name == "#") {
+            loads.body_length = core::parse_number(unit).value_or(NAN);
+            loads.body_height = core::parse_number(rest).value_or(NAN);
         } else if (!list || is_listed(name)) {
             loads.values.push_back(
                 {std::string(name), std::string(unit), core::parse_number(rest).value_or(std::nan(""))});
@@ -203,7 +210,7 @@ Value compute_loads(Engine& engine, const Case& entry) {
                                     {"drag_pressure", result.named_pressure.drag_force},
                                     {"drag_viscous", result.named_viscous.drag_force}};
     return {document.dump(-1, ' ', false, json::error_handler_t::replace),
-            brief(columns, settled, postproc::base_tilt(result, said.base), problems)};
+            brief(columns, settled, postproc::base_tilt(result, said.base), result, problems)};
 }
 
 /// Copies of one file under several names, a warning with the last of each; a file in another unit than the rest;
@@ -228,6 +235,11 @@ void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
         }
         cases.push_back(std::move(one));
         place.push_back(i);
+    }
+    for (CaseLoads& loads : all) {
+        if (auto fault = body_fault(study, loads)) {
+            loads.warnings.push_back(std::move(*fault));
+        }
     }
     for (const auto& [problem, last] : postproc::odd_loads(cases)) {
         CaseLoads& loads = all[place[last]];

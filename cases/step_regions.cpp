@@ -52,7 +52,11 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
         for (const auto& axis : table.axes) {
             key.add("axis", axis);
         }
-        key.add("points of '" + name + "'", digest_of(table_points(table, engine.results)));
+        const core::Table points = table_points(table, engine.results);
+        key.add("points of '" + name + "'", digest_of(points));
+        for (const std::string& comment : points.comments) {
+            key.add("said of them", comment);
+        }
     }
     return key;
 }

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cases/doubts.h"
 #include "cases/engine.h"
 #include "cases/export_files.h"
 #include "core/counted.h"
@@ -16,6 +15,7 @@
 #include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/fit/exact_points.h"
 #include "surrogates/tables/fit/force_table.h"
+#include "surrogates/tables/points/set_points.h"
 
 namespace underbody::cases {
 
@@ -26,6 +26,9 @@ namespace fs = std::filesystem;
 Key table_key(const std::string& kind, const TableSpec& spec, const core::Table& points) {
     Key key(kind, {"surrogates/tables"});
     key.add("quantity", spec.quantity).add("points", digest_of(points));
+    for (const std::string& comment : points.comments) {
+        key.add("said of its points", comment);
+    }
     key.add("net_weight", spec.net_weight.value_or(std::nan("")))
         .add("virtual_mass", spec.virtual_mass)
         .add("fit", spec.fit);
@@ -178,12 +181,11 @@ void run_table(Engine& engine, const TableSpec& spec) {
     }
     SharedTable table(engine.states(), [&] { return fitted(spec, points); });
     Key key = table_key("table", spec, points);
-    auto mixed = basis_of(spec, engine.results);
-    for (auto& remark : mixed_conditions(spec, engine.results)) {
-        mixed.push_back(std::move(remark));
-    }
-    for (auto& doubt : doubts_of_mesh(spec, engine.results)) {
-        mixed.push_back(std::move(doubt));
+    auto mixed = mixed_conditions(spec, engine.results);
+    for (const std::string& comment : points.comments) {  // warnings among them are remarks of the table itself
+        if (!comment.starts_with(tables::warning_comment)) {
+            mixed.push_back(comment);
+        }
     }
     for (const auto& remark : mixed) {
         key.add("remark", remark);

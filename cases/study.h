@@ -120,7 +120,8 @@ struct CaseLoads {
     std::vector<LoadValue> values;    ///< empty unless computed or unchanged
     std::string settled = "unknown";  ///< "settled", "not settled", "unknown": postproc::Settled
     std::string settled_why;
-    double base_pitch = NAN;  ///< rad, how far the base is pitched in the file
+    double base_pitch = NAN;                      ///< rad, how far the base is pitched in the file
+    double body_length = NAN, body_height = NAN;  ///< m, of the body in the file; NaN: not known
     core::Problems warnings;  ///< what makes the numbers less than they seem: an open surface, no wall shear, ...
     std::int64_t id = 0;      ///< in the store
     std::string origin;       ///< digest over all that it was made from

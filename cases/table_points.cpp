@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/doubts.h"
 #include "cases/study.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -176,7 +177,11 @@ bool has_loads(const TableSpec& spec, const StudyResults& results) {
 
 std::vector<std::string> basis_of(const TableSpec& spec, const StudyResults& results) {
     const core::Table* found = spec.shape.empty() ? nullptr : loads_of_shape(spec, results);
-    return found == nullptr ? std::vector<std::string>() : found->comments;
+    std::vector<std::string> lines = found == nullptr ? std::vector<std::string>() : found->comments;
+    for (std::string& line : lines) {
+        line.erase(0, line.starts_with(tables::warning_comment) ? tables::warning_comment.size() : 0);
+    }
+    return lines;
 }
 
 core::Table table_points(const TableSpec& spec, const StudyResults& results) {
@@ -216,6 +221,9 @@ core::Table table_points(const TableSpec& spec, const StudyResults& results) {
         points.add_numbers(spec.quantity + "_sigma", unit, std::move(sigma));
     }
     add_held(spec, chosen, points);
+    for (const std::string& doubt : doubts_of_mesh(spec, results)) {
+        points.comments.push_back(std::string(tables::warning_comment) + doubt);
+    }
     points.add_text("case", chosen.text("case"));
     if (chosen.find("settled") != nullptr) {
         points.add_text("settled", chosen.text("settled"));

@@ -332,6 +332,7 @@ private:
         result_.named_pressure = named(result_.pressure);
         result_.named_viscous = named(result_.viscous);
         take_solver_references();
+        result_.extent = {extent_along(axes_.forward), extent_along(axes_.starboard), extent_along(axes_.up)};
         result_.length = options_.references.length.value_or(extent_along(axes_.forward));
         result_.closure = result_.area > 0 ? norm(area_vector) / result_.area : 0;
         for (std::size_t k = 0; k < 3; ++k) {

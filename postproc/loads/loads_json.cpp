@@ -49,6 +49,7 @@ void to_json(nlohmann::json& json, const LoadsResult& result) {
     json["viscous"] = json_of(result.viscous);
     json["viscous"].update(json_of(result.named_viscous));
     json["area"] = result.area;
+    json["extent"] = result.extent;
     json["length"] = result.length;
     json["closure"] = result.closure;
     json["force_per_reference_pascal"] = result.force_per_reference_pascal;

@@ -120,6 +120,7 @@ struct LoadsResult {
     std::vector<LeftOutZone> left_out;  ///< a ground, a tunnel, an inlet, a wall that stands twice in the file; only
                                         ///< when no zones were named
     double area = 0;                    ///< m^2
+    Vector extent{};         ///< m, of the zones that were taken: forward, to starboard, up; half models doubled
     double length = 0;       ///< m, of the body: as given among the references, else its extent along forward
     std::string cut_across;  ///< "x", "y", "z" where the surface ends as that of a half model does; else empty
     double closure = 0;      ///< size of the summed area vector over the area: 0 for a closed surface

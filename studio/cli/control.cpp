@@ -20,6 +20,7 @@
 #include "studio/figures/render.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/model/table_notes.h"
+#include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/estimator/control/loop_region.h"
 #include "surrogates/tables/exports/export.h"
 
@@ -126,11 +127,14 @@ nlohmann::json draw_region(const ControlArguments& a, const SeparatedPlant& plan
 }
 
 /// What the controller in C is made of.
-std::vector<std::string> made_from(const ControlArguments& a) {
+std::vector<std::string> made_from(const ControlArguments& a, const dynamics::Model& model) {
     std::vector<std::string> lines{std::filesystem::path(a.model).filename().string() + ", content " +
                                    core::content_hash_of_file(a.model).substr(0, 12)};
     if (!a.conditions.empty()) {
         lines.push_back("conditions " + a.conditions);
+    }
+    if (std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
+        lines.push_back("WARNING: " + reading);
     }
     return lines;
 }
@@ -216,11 +220,12 @@ nlohmann::json json_of(const LoopRun& loop, const SeparatedPlant& plant, const C
     return json;
 }
 
-void write_files(const ControlArguments& a, const LoopRun& loop, const SeparatedPlant& plant, const ControlLaw& law,
-                 const LoopEstimator& estimator, const LoopOptions& o) {
+void write_files(const ControlArguments& a, const dynamics::Model& model, const LoopRun& loop,
+                 const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
+                 const LoopOptions& o) {
     if (!a.export_c.empty()) {
         const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
-        core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a)));
+        core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a, model)));
     }
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), loop.table());
@@ -279,6 +284,10 @@ int run_control(const ControlArguments& a, Shell& shell) {
     law.limit = quantity("--limit", a.limit, "N", INFINITY);
     const LoopOptions o = loop_options(a, law.reference_gap);
     check(a, plant, law, o, shell);
+    if (const std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
+        shell.show_warning(reading);
+        warnings.push_back(reading);
+    }
     const std::vector<std::string> outside = show_gaps_outside(shell, model, held, {law.reference_gap, o.gap});
     warnings.insert(warnings.end(), outside.begin(), outside.end());
     const nlohmann::json notes = {{"warnings", warnings},
@@ -293,7 +302,7 @@ int run_control(const ControlArguments& a, Shell& shell) {
                                         : "the loop does not hold this gap: the motion runs away");
     }
     shell.hand_over("motion", [&] { return loop.table(); });
-    write_files(a, loop, plant, law, estimator, o);
+    write_files(a, model, loop, plant, law, estimator, o);
     nlohmann::json json = json_of(loop, plant, law, a, notes);
     std::string region_text;
     if (!a.region.empty()) {

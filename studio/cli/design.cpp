@@ -54,6 +54,11 @@ json notes_json(const cases::Design& design) {
     return list;
 }
 
+/// Of what a run is expected to lower the error of.
+std::string unit_of_load(const tables::SearchProblem& problem) {
+    return core::find_quantity(problem.objectives.front().response.quantity)->unit;
+}
+
 json json_of(const tables::DesignSearch& search, const cases::DesignSpec& spec, const tables::Candidate& c) {
     const auto& problem = search.problem();
     json result = {{"variables", json::object()},
@@ -63,6 +68,8 @@ json json_of(const tables::DesignSearch& search, const cases::DesignSpec& spec, 
                    {"chance_solved", c.chance_solved},
                    {"fidelity", spec.fidelities.at(std::min(c.level, spec.fidelities.size() - 1)).name},
                    {"log_value", c.log_value},
+                   {"sigma_of", problem.objectives.front().response.quantity},
+                   {"sigma_unit", unit_of_load(problem)},
                    {"sigma_now", c.sigma_now},
                    {"sigma_after", c.sigma_after}};
     for (std::size_t v = 0; v < problem.variables.size(); ++v) {
@@ -209,8 +216,9 @@ int next(Shell& shell, const Arguments& a) {
     for (const auto& c : designs) {
         list.push_back(json_of(search, design.spec(), c));
         text += "fidelity " + design.spec().fidelities.at(std::min(c.level, design.spec().fidelities.size() - 1)).name +
-                ": the error there falls from " + core::format_number(c.sigma_now, 3) + " to " +
-                core::format_number(c.sigma_after, 3) + "; it is solved with a chance of " +
+                ": the error of its " + search.problem().objectives.front().response.quantity + " falls from " +
+                core::told(c.sigma_now, unit_of_load(search.problem()), 3) + " to " +
+                core::told(c.sigma_after, unit_of_load(search.problem()), 3) + "; it is solved with a chance of " +
                 core::format_number(100 * c.chance_solved, 3) + " %\n" + text_of(search, c);
     }
     constexpr double hopeless = 0.01;  // chance that all limits hold

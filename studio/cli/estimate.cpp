@@ -145,13 +145,17 @@ estimator::EstimateOptions options_of(const EstimateArguments& a) {
     return options;
 }
 
-void write_files(const EstimateArguments& a, const estimator::Estimation& result) {
+void write_files(const EstimateArguments& a, const dynamics::Model& model, const estimator::Estimation& result) {
     if (!a.out.empty()) {
         core::write_csv(std::filesystem::path(a.out), result.table);
     }
     if (!a.export_c.empty()) {
         const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
-        core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, {a.model}));
+        std::vector<std::string> made_from = {a.model};
+        if (std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
+            made_from.push_back("WARNING: " + reading);
+        }
+        core::write_file(a.export_c, estimator::export_c(result.design.front().filter, name, made_from));
     }
     if (!a.plot.empty()) {
         write_picture(result.figure, a.plot);
@@ -177,7 +181,7 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
     }
     const dynamics::Model model = dynamics::read_model(a.model);
     const dynamics::Measurements data = dynamics::read_measurements(a.data);
-    const std::vector<std::string> warnings = show_table_warnings(shell, model, data);
+    std::vector<std::string> warnings = show_table_warnings(shell, model, data);
     shell.show(data.problems);
     const estimator::EstimateOptions options = options_of(a);
     const estimator::Estimation result = estimator::estimate(model, data, options, shell.progress());
@@ -199,8 +203,14 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
         throw core::UsageError("missing", "the extended filter has no linear form to export", {},
                                "choose --observer kalman, reduced, full, latent or disturbance");
     }
+    if (!a.export_c.empty()) {
+        if (const std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
+            shell.show_warning(reading);
+            warnings.push_back(reading);
+        }
+    }
     shell.hand_over("estimates", [&] { return result.table; });
-    write_files(a, result);
+    write_files(a, model, result);
     if (shell.json) {
         shell.print_json(json_of(result, surfaces, along, warnings));
     }

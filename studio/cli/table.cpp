@@ -296,6 +296,26 @@ void hold_axes(tables::Equilibria& found, const ForceTable& table, const tables:
     }
 }
 
+/// What nobody says of a body at rest: no heave velocity, and what scales a force at its reference.
+void complete_at_rest(const dynamics::Model& model, const ForceTable& table, tables::Held& asked,
+                      core::Problems& remarks) {
+    dynamics::Conditions known = model.conditions.over(dynamics::references_of(model));
+    known[dynamics::Channel::heave_velocity] = known[dynamics::Channel::pitch_rate] = 0;
+    for (const auto& axis : table.axes()) {
+        dynamics::Channel channel{};
+        const bool said =
+            std::any_of(asked.begin(), asked.end(), [&](const auto& one) { return one.first == axis.name; });
+        if (!said && axis.name != "gap" && dynamics::find_channel(axis.name, channel) && known.has(channel)) {
+            asked.emplace_back(axis.name, known[channel]);
+            remarks.push_back(
+                {core::Problem::Severity::note,
+                 axis.name + " is not given: " + core::told_condition(axis.name, known[channel]) +
+                     (known[channel] == 0 ? " is taken, at rest" : " is taken, the reference of its scale"),
+                 {model.name, {}, {}, {}}});
+        }
+    }
+}
+
 nlohmann::json equilibria_json(const Balance& balance, const nlohmann::json& of_model) {
     nlohmann::json document = balance.found;
     for (std::size_t i = 0; i < balance.masses.size(); ++i) {
@@ -327,6 +347,7 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
                                : Balance{tables::equilibria(table, options), table, options, {}};
     tables::Equilibria& found = balance.found;
     if (is_model) {
+        complete_at_rest(dynamics::read_model(command.table.file), table, asked, found.remarks);
         hold_axes(found, table, asked);
     }
     shell.show(found.remarks);

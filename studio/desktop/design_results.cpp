@@ -5,6 +5,7 @@
 #include <QTableWidget>
 #include <cmath>
 
+#include "cases/body_of_case.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "studio/desktop/design_panel.h"
@@ -98,10 +99,10 @@ void DesignPanel::show_card() {
     card_->setRowCount(static_cast<int>(results().size() + lift.size()));
     for (int row = 0; row < card_->rowCount(); ++row) {
         const auto at = static_cast<std::size_t>(row);
-        const bool body = at < results().size();
-        const QString name = body ? results()[at].name : lift[at - results().size()][0];
-        const QString now = !body ? lift[at - results().size()][1] : shown_ ? results()[at].of(*shown_) : QString();
-        const QString was = body && before_ ? results()[at].of(*before_) : QString();
+        const Result* body = at < lift.size() ? nullptr : &results()[at - lift.size()];  // lift is seen first
+        const QString name = body == nullptr ? lift[at][0] : body->name;
+        const QString now = body == nullptr ? lift[at][1] : shown_ ? body->of(*shown_) : QString();
+        const QString was = body != nullptr && before_ ? body->of(*before_) : QString();
         const QStringList cells = {name, now, was};
         for (int column = 0; column < 3; ++column) {
             auto* item = card_->item(row, column);
@@ -198,7 +199,8 @@ void DesignPanel::show_lift() {
     learn();
     std::vector<cases::NamedShape> shapes;
     for (const auto& [name, shape] : session().shapes) {
-        shapes.push_back({name, session().shape_files.at(name), shape});
+        shapes.push_back({name, session().shape_files.at(name), shape,
+                          cases::is_of_its_cases(session().study, session().results, name)});
     }
     lift_ = cases::known_lift(session().study, shapes, surrogate_.get(), shape_);
     lift_label_->setText("Lift: " + qt(lift_.words()) +

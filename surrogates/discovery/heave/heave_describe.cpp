@@ -38,8 +38,11 @@ void HeaveLoop::measure_error() {
         change.channel = std::string("gap");
         change.unit = std::string("m");
         change.horizon = before.horizon;
-        change.noise =
-            dynamics::unit_of_errors(data_.declared_noise("gap"), std::hypot(null_noise_.gap, null_noise_.slow));
+        // As predict has it: a declared figure holds unless the readings themselves scatter by more. What the gap
+        // wanders by beside it is noise as well, where nothing is declared.
+        const auto declared = data_.declared_noise("gap");
+        change.noise = dynamics::unit_of_errors(
+            declared, declared ? records_.gap_noise : std::hypot(null_noise_.gap, null_noise_.slow));
         change.before = estimate(before);
         change.after = estimate(after);
         if (std::isfinite(change.before.rmse) && std::isfinite(change.after.rmse)) {

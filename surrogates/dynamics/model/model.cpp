@@ -1,6 +1,7 @@
 #include "surrogates/dynamics/model/model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/text.h"
@@ -183,8 +184,25 @@ double sum_of_sources(const Model& model, const std::string& quantity, const Con
     return sum;
 }
 
+Conditions references_of(const Model& model) {
+    Conditions references;
+    std::array<bool, channel_count> several{};
+    for (const ForceSource& source : model.forces) {
+        for (const ForceScale& scale : source.scales) {
+            several[static_cast<std::size_t>(scale.channel)] |=
+                references.has(scale.channel) && references[scale.channel] != scale.reference;
+            references[scale.channel] = scale.reference;
+        }
+    }
+    for (std::size_t i = 0; i < channel_count; ++i) {
+        references.value[i] = several[i] ? std::nan("") : references.value[i];
+    }
+    return references;
+}
+
 StaticModel::StaticModel(const Model& model, const std::string& quantity)
     : model_(model.resolved()), quantity_(quantity) {
+    model_.conditions = model_.conditions.over(references_of(model_));
     // Corrections add to the force as the vehicle's other effects leave it, as in the equation of motion.
     std::stable_partition(model_.effects.begin(), model_.effects.end(), [](const EffectUse& use) {
         const EffectInfo& info = effect(use.name).info();

@@ -175,10 +175,14 @@ Model read_model_text(std::string_view text, const std::string& source, const st
 /// its tables copied beside it (same relative names where they lie below the model, else by file name).
 void write_model(const Model& model, const std::filesystem::path& file);
 
+/// The reference of each channel that scales forces, where all its scales have one. What nobody gives is at its
+/// reference, for a scale as for the effects and corrections beside it: they are forces of one motion.
+Conditions references_of(const Model& model);
+
 /// A measured quantity (lift_force, drag_force, side_force, pitch_moment, ...) at a set point: sum of the model's
 /// sources of that quantity, with its static effects. `outside` becomes true when a table was asked beyond its range.
 /// Throws core::InputError when the set point lacks a channel that a table or scale needs and the model holds no value
-/// for it (a scale without value counts as at its reference).
+/// for it (what scales a force and has no value is at its reference, for effects and corrections too).
 double static_value(const Model& model, const std::string& quantity, const Conditions& set_point,
                     bool* outside = nullptr);
 

@@ -147,6 +147,24 @@ void take_scales(ForceSource& source, const core::TomlTable& scales) {
     }
 }
 
+/// Forces grow with the density: a table of one water is not that of another.
+void remark_on_water(Model& model, const ForceSource& source) {
+    const core::Column* density = source.table.points().find("density");
+    if (density == nullptr || density->is_text() || density->numbers.empty()) {
+        return;
+    }
+    const auto [low, high] = std::minmax_element(density->numbers.begin(), density->numbers.end());
+    const double own = model.environment.density;
+    constexpr double same = 2e-3;  // fresh water between 4 and 25 degrees
+    if (*low == *high && std::abs(*low - own) > same * own) {
+        model.remarks.push_back({core::Problem::Severity::warning,
+                                 "the " + source.quantity + " table is of water of " + core::format_number(*low, 6) +
+                                     " kg/m^3, the model's is of " + core::format_number(own, 6) +
+                                     " kg/m^3: the table's forces are taken as they are",
+                                 {source.table_path.string(), {}, {}, {}}});
+    }
+}
+
 ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
     const std::string quantity = table.choice(
         "quantity", {"lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment"});
@@ -343,6 +361,7 @@ Model read(const core::TomlTable& root, std::string_view text) {
     }
     for (const core::TomlTable& table : root.tables("force")) {
         model.forces.push_back(read_force(table, model.remarks));
+        remark_on_water(model, model.forces.back());
     }
     for (const core::TomlTable& table : root.tables("jet")) {
         Jet jet = read_jet(table);

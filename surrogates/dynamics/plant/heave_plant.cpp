@@ -97,7 +97,7 @@ double HeaveSource::Scale::factor(double value) const {
 }
 
 HeavePlant::HeavePlant(const Model& declared, const Conditions& held, const std::vector<Channel>& varying)
-    : varying_channels_(varying), held_(held.over(declared.conditions)) {
+    : varying_channels_(varying), held_(held.over(declared.conditions).over(references_of(declared))) {
     const Model model = declared.resolved();
     terms.mass = model.vehicle.mass + (model.vehicle.added_mass_heave_table ? 0 : model.vehicle.added_mass_heave);
     if (model.vehicle.added_mass_heave_table) {

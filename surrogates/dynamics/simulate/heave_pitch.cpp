@@ -24,7 +24,8 @@ double limited(double value, double limit) { return limit > 0 ? std::clamp(value
 }  // namespace
 
 HeavePitch::HeavePitch(const Model& declared, const Conditions& given, const std::vector<Channel>& varying)
-    : held_(given.over(declared.conditions)), vertical_(vertical_channel(declared.resolved(), held_, varying)) {
+    : held_(given.over(declared.conditions).over(references_of(declared))),
+      vertical_(vertical_channel(declared.resolved(), held_, varying)) {
     const Model model = declared.resolved();
     const Vehicle& v = model.vehicle;
     inertia_ = needed(v.pitch_inertia, "pitch_inertia", model) + v.added_inertia_pitch;

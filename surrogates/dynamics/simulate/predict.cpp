@@ -555,6 +555,15 @@ std::string reading_text(const RecordReading& records) {
     return text;
 }
 
+std::string reading_on_the_rig(RecordReading records) {
+    records.input_between = RecordReading::Between::unsaid;
+    const std::string read = reading_text(records);
+    return read.empty() ? std::string()
+                        : "[records] of the model reads the logs of its rig with " + read +
+                              ": input_force is here the force that acts; a rig that takes and gives it as its logs "
+                              "hold it needs the same reading between";
+}
+
 Prediction predict(const Model& model, const Measurements& data, const PredictOptions& options,
                    core::Progress& progress) {
     if (!(options.horizon > 0)) {

@@ -79,6 +79,9 @@ InputReading input_reading(const Model& model, const Measurements& data, const P
                            core::Progress& progress = core::Progress::none());
 /// What the logs say and how it is read instead, for people: "input_force times -1; ..."; empty: as logged.
 std::string reading_text(const RecordReading& records);
+/// For who puts a controller or an observer of a model on the rig that its logs are of: that it needs the same reading
+/// of forces and gaps as the logs. Empty where logs are read as they stand.
+std::string reading_on_the_rig(RecordReading records);
 
 /// Throws core::InputError when the model lacks what the data need (a static quantity without a force source, ...);
 /// a predicted motion that is not finite (kind "integration").

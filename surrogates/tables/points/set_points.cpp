@@ -472,6 +472,13 @@ SetPoints set_points(const core::Table& table, const std::string& quantity, cons
             points.remarks.push_back(std::move(unused));
         }
     }
+    for (const std::string& comment : table.comments) {
+        if (comment.starts_with(warning_comment)) {
+            points.remarks.push_back({core::Problem::Severity::warning,
+                                      comment.substr(warning_comment.size()),
+                                      {points.table.source, {}, {}, {}}});
+        }
+    }
     for (auto& unsettled : unsettled_points(points.table)) {
         points.remarks.push_back(std::move(unsettled));
     }

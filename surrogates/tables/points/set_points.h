@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,10 @@ struct SetPoints {
     }
     [[nodiscard]] bool is_doubted(std::size_t i) const { return !doubted.empty() && doubted[i] > 0; }
 };
+
+/// How a comment of a table begins that changes what its numbers mean: it is a warning of every table that is made of
+/// them, and so stands where these are read, in exports too.
+inline constexpr std::string_view warning_comment = "warning: ";
 
 /// Throws core::InputError with file, line and column: unknown quantity, one point, an axis without spread, set points
 /// that repeat and disagree, sigma zero or negative or missing, missing set points, no axis at all, more than max_axes.

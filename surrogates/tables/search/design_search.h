@@ -64,7 +64,7 @@ struct Candidate {
     double chance_valid = 1;   ///< that all limits hold
     double chance_solved = 1;  ///< that a run gives a result, learned from runs that failed
     std::size_t level = 0;     ///< fidelity that pays best, of those that have runs
-    double sigma_now = 0;      ///< of the first objective at the candidate, highest fidelity
+    double sigma_now = 0;      ///< of the first objective's quantity at its (first) conditions, highest fidelity
     double sigma_after = 0;    ///< expected after its run on `level`
 };
 
