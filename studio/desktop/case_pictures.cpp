@@ -2,6 +2,7 @@
 
 #include <QBoxLayout>
 #include <QComboBox>
+#include <QEvent>
 #include <QLabel>
 #include <QListWidget>
 #include <QSignalBlocker>
@@ -39,6 +40,11 @@ CasePictures::CasePictures(Desk& desk, QWidget* parent)
     connect(views_, QOverload<int>::of(&QComboBox::activated), this, [this] {
         desk_.act({"show", "pictures", views_->currentData().toString().toStdString()});
     });
+    list_->setMouseTracking(true);
+    list_->viewport()->installEventFilter(this);
+    connect(list_, &QListWidget::itemEntered, this,
+            [this](const QListWidgetItem* item) { Q_EMIT hovered(item->text()); });
+    connect(list_, &QListWidget::viewportEntered, this, [this] { Q_EMIT hovered({}); });
     connect(list_, &QListWidget::itemSelectionChanged, this, [this] {
         Words words = {"select"};
         for (const auto* item : list_->selectedItems()) {
@@ -48,6 +54,13 @@ CasePictures::CasePictures(Desk& desk, QWidget* parent)
             desk_.act(words);
         }
     });
+}
+
+bool CasePictures::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::Leave) {
+        Q_EMIT hovered({});
+    }
+    return QWidget::eventFilter(watched, event);
 }
 
 QString CasePictures::said() const { return said_->text(); }

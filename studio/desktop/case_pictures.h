@@ -28,6 +28,13 @@ public:
     /// The pictures of the list in their full size, each with its case.
     [[nodiscard]] Sheet sheet() const;
 
+Q_SIGNALS:
+    /// The mouse is over the picture of that case; empty: over none.
+    void hovered(const QString& name);
+
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
 private:
     void ask_icons(const std::vector<std::string>& keys);
 

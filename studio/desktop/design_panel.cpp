@@ -52,6 +52,7 @@ DesignPanel::~DesignPanel() = default;
 
 void DesignPanel::build() {
     auto* all = new QHBoxLayout(this);
+    all->setContentsMargins(4, 4, 4, 4);
     auto* views = new QSplitter(Qt::Vertical);
     all->addWidget(views, 1);
     upper_ = new QSplitter(Qt::Horizontal);
@@ -158,7 +159,7 @@ void DesignPanel::build_side(QVBoxLayout& side) {
     }
     card_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);  // as high as its rows, where there is room
     card_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
-    card_->setMinimumHeight(160);
+    card_->setMinimumHeight(130);
     side.addWidget(card_);
     state_label_ = new QLabel;
     state_label_->setWordWrap(true);

@@ -137,6 +137,11 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
                                 (low < high ? core::format_number(low, 6) + ":" + core::format_number(high, 6)
                                             : std::string())});
     });
+    connect(cases_, &CasePictures::hovered, this, [this](const QString& name) {
+        const auto at = std::find_if(kept_.begin(), kept_.end(),
+                                     [&](std::size_t row) { return name_of_row(row) == name.toStdString(); });
+        parallel_->point_out(name.isEmpty() || at == kept_.end() ? std::nullopt : std::optional(*at));
+    });
     connect(table_->selectionModel(), &QItemSelectionModel::selectionChanged, this, &ExplorePanel::take_selection);
     connect(table_, &QTableView::activated, this, [this] {  // Enter
         state().explore.shapes ? take_selected() : static_cast<void>(desk_.act({"workspace", "compare"}));

@@ -10,16 +10,21 @@
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QPlainTextEdit>
+#include <QPointer>
 #include <QProcess>
 #include <QPushButton>
 #include <QSplitter>
 #include <QTimer>
+#include <algorithm>
 
+#include "cases/export_files.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
+#include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/state/words.h"
 
@@ -27,9 +32,18 @@ namespace underbody::studio {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+QString said_of(const std::exception_ptr& error) {
+    const Told told = tell(error);
+    return told.message + (told.hint.isEmpty() ? "" : "\n" + told.hint);
+}
+
+}  // namespace
+
 ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
-                           std::string file)
-    : QDialog(parent), jobs_(jobs), all_(std::move(all)), file_(std::move(file)) {
+                           TableOfStudy of)
+    : QDialog(parent), jobs_(jobs), all_(std::move(all)), of_(std::move(of)) {
     setObjectName("export");
     setAttribute(Qt::WA_DeleteOnClose);
     setWindowTitle("Export " + qt(all_.front()->quantity()).replace('_', ' ') + " for a controller");
@@ -87,7 +101,7 @@ void ExportDialog::add_choices(QFormLayout& form) {
     }
     format_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     form.addRow("&Format", format_);
-    name_ = new QLineEdit(qt(all_.front()->quantity()));
+    name_ = new QLineEdit(qt(of_.name.empty() ? all_.front()->quantity() : cases::export_name(of_.name)));
     form.addRow("&Name", name_);
     frame_ = new QComboBox;
     frame_->addItems({"up: lift positive up", "ned: body axes, z down"});
@@ -138,7 +152,11 @@ tables::ExportOptions ExportDialog::options() const {
     options.name = name_->text().trimmed().toStdString();
     options.single_precision = single_->isChecked();
     options.frame = frame_->currentIndex() == 1 ? tables::Frame::ned : tables::Frame::up;
+    if (as_fitted() && !of_.origin.empty()) {
+        options.provenance = {of_.origin};
+    }
     if (const std::string text = max_error_->text().trimmed().remove('%').toStdString(); !text.empty()) {
+        refuse_decimal_comma(text);
         const auto percent = core::parse_number(text);
         if (!percent || !(*percent > 0 && *percent < 100)) {
             throw core::UsageError("range", "the error allowed is a share between 0 and 100 %");
@@ -148,18 +166,29 @@ tables::ExportOptions ExportDialog::options() const {
     return options;
 }
 
+namespace {
+
+tables::RangePolicy chosen_in(const QComboBox& policy) {
+    return *tables::range_policy(policy.currentData().toString().toStdString());
+}
+
+}  // namespace
+
+bool ExportDialog::as_fitted() const {
+    const auto& axes = all_.front()->axes();
+    return std::equal(policies_.begin(), policies_.end(), axes.begin(), axes.end(),
+                      [](const auto& chosen, const auto& axis) { return chosen_in(*chosen.second) == axis.range; });
+}
+
 tables::ForceTable ExportDialog::table() const {
     const auto& known = *all_.front();
-    bool same = true;
-    tables::FitOptions fit;
-    for (std::size_t k = 0; k < policies_.size(); ++k) {
-        const auto policy = *tables::range_policy(policies_[k].second->currentData().toString().toStdString());
-        same = same && policy == known.axes()[k].range;
-        fit.range.named.emplace_back(policies_[k].first, policy);
-        fit.axes.push_back(policies_[k].first);
-    }
-    if (same) {
+    if (as_fitted()) {
         return known;
+    }
+    tables::FitOptions fit;
+    for (const auto& [axis, policy] : policies_) {
+        fit.range.named.emplace_back(axis, chosen_in(*policy));
+        fit.axes.push_back(axis);
     }
     fit.kind = known.kind().find("aussian") != std::string::npos  ? tables::FitOptions::Kind::gaussian_process
                : known.kind().find("spline") != std::string::npos ? tables::FitOptions::Kind::spline
@@ -174,49 +203,78 @@ void ExportDialog::refresh() {
     for (const auto& [axis, policy] : policies_) {
         policy->setToolTip(policy->currentText());
     }
-    command_->setText(command("FILE"));
-    tables::ExportOptions wanted;
+    command_->clear();
     try {
-        wanted = options();
+        ask_preview(options(), table());
+        command_->setText(command("FILE"));
     } catch (const core::Error& error) {
+        jobs_.cancel("export preview");  // of what stood there before
         facts_->setText(qt(error.what()));
-        return;
     }
+}
+
+namespace {
+
+/// What would be written, and how far it is from the table.
+struct Seen {
+    QString facts, text;
+    core::Figure error;
+};
+
+Seen seen_of(const tables::ForceTable& table, const std::string& kind, const tables::ExportOptions& wanted,
+             core::Progress& progress) {
+    const core::TemporaryFolder folder;
+    std::string ending;
+    for (const auto& one : tables::export_formats()) {
+        ending = one.name == kind ? one.ending : ending;
+    }
+    const fs::path file = folder.path() / (wanted.name + ending);
+    const auto result = tables::export_table(table, kind, file, wanted, progress);
+    const std::string bytes = core::read_file(file);
+    Seen seen;
+    if (result.error > 0) {
+        seen.error = tables::export_difference_figure(table, kind, wanted, progress);
+    }
+    seen.facts = "grid ";
+    for (std::size_t i = 0; i < result.grid.size(); ++i) {
+        seen.facts += (i > 0 ? " x " : "") + QString::number(result.grid[i]);
+    }
+    seen.facts += QString(" points; file %1 bytes").arg(bytes.size());
+    seen.facts +=
+        result.error > 0
+            ? QString("; within %1 %2 of the table").arg(qt(core::format_number(result.error, 3)), qt(table.unit()))
+            : QString("; equal to the table");
+    for (const auto& remark : result.remarks) {
+        seen.facts += "\n" + qt(remark.message);
+    }
+    const bool text = bytes.find('\0') == std::string::npos;
+    seen.text = text ? qt(bytes.substr(0, 200000)) : QString("(a binary file)");
+    return seen;
+}
+
+}  // namespace
+
+void ExportDialog::ask_preview(const tables::ExportOptions& wanted, const tables::ForceTable& chosen) {
     jobs_.start(
         "export preview", "preview",
-        [this, wanted, chosen = table(), kind = format()](core::Progress& progress) {
-            const core::TemporaryFolder folder;
-            std::string ending;
-            for (const auto& one : tables::export_formats()) {
-                ending = one.name == kind ? one.ending : ending;
+        [self = QPointer<ExportDialog>(this), wanted, chosen, kind = format()](core::Progress& progress) {
+            Seen seen;
+            try {
+                seen = seen_of(chosen, kind, wanted, progress);
+            } catch (const core::Cancelled&) {
+                throw;
+            } catch (const core::Error& error) {  // said in the dialog, not behind it
+                seen.facts = qt(error.what());
             }
-            const fs::path file = folder.path() / (wanted.name + ending);
-            const auto result = tables::export_table(chosen, kind, file, wanted, progress);
-            const std::string bytes = core::read_file(file);
-            core::Figure error;
-            if (result.error > 0) {
-                error = tables::export_difference_figure(chosen, kind, wanted, progress);
-            }
-            QString facts = "grid ";
-            for (std::size_t i = 0; i < result.grid.size(); ++i) {
-                facts += (i > 0 ? " x " : "") + QString::number(result.grid[i]);
-            }
-            facts += QString(" points; file %1 bytes").arg(bytes.size());
-            facts += result.error > 0 ? QString("; within %1 %2 of the table")
-                                            .arg(qt(core::format_number(result.error, 3)), qt(chosen.unit()))
-                                      : QString("; equal to the table");
-            for (const auto& remark : result.remarks) {
-                facts += "\n" + qt(remark.message);
-            }
-            const bool text = bytes.find('\0') == std::string::npos;
-            const QString shown = text ? qt(bytes.substr(0, 200000)) : QString("(a binary file)");
-            return [this, facts, shown, error] {
-                facts_->setText(facts);
-                error_->setVisible(!error.curves.empty());
-                if (!error.curves.empty()) {
-                    error_->show_figure(error);
+            return [self, seen] {
+                if (self) {
+                    self->facts_->setText(seen.facts);
+                    self->error_->setVisible(!seen.error.curves.empty());
+                    if (!seen.error.curves.empty()) {
+                        self->error_->show_figure(seen.error);
+                    }
+                    self->text_->setPlainText(seen.text);
                 }
-                text_->setPlainText(shown);
             };
         },
         true);
@@ -225,7 +283,7 @@ void ExportDialog::refresh() {
 QString ExportDialog::command(const QString& path) const {
     Words words = {"underbody",
                    "export",
-                   file_.empty() ? "TABLE.csv" : file_,
+                   of_.file.empty() ? "TABLE.csv" : of_.file,
                    "--quantity",
                    all_.front()->quantity(),
                    "--format",
@@ -248,7 +306,7 @@ QString ExportDialog::command(const QString& path) const {
         range += (range.empty() ? "" : ",") + axis + "=" + box->currentData().toString().toStdString();
     }
     words.insert(words.end(), {"--range", range});
-    return qt(line_of(words));
+    return qt(of_.line(words));
 }
 
 void ExportDialog::write(const fs::path& path) {
@@ -286,9 +344,15 @@ void ExportDialog::choose_and_write() {
             QMessageBox::Yes) {
         return;
     }
+    write_to(path);
+}
+
+void ExportDialog::write_to(const QString& path) {
     try {
         write(path.toStdString());
+        proof_->setText("Wrote " + path);
     } catch (...) {
+        proof_->setText("Not written: " + said_of(std::current_exception()));
         Q_EMIT failed("writing " + path, std::current_exception());
     }
 }
@@ -296,40 +360,70 @@ void ExportDialog::choose_and_write() {
 QString ExportDialog::proof() const { return proof_->text(); }
 QString ExportDialog::preview() const { return text_->toPlainText(); }
 
+namespace {
+
+struct Proof {
+    QString sentence;
+    bool equal = false;
+};
+
+bool has_run(const QString& folder, const QString& program, const QStringList& arguments, QString& said) {
+    QProcess process;
+    process.setWorkingDirectory(folder);
+    process.setProcessChannelMode(QProcess::MergedChannels);
+    process.start(program, arguments);
+    const bool ended = process.waitForStarted() && process.waitForFinished(60000);
+    said = QString::fromUtf8(process.readAll()).trimmed();
+    return ended && process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0;
+}
+
+Proof proof_of(const tables::ForceTable& table, const tables::ExportOptions& wanted, core::Progress& progress) {
+    const core::TemporaryFolder folder;
+    const QString place = qt(folder.path().string());
+    const auto result = tables::export_table(table, "c", folder.path() / (wanted.name + ".h"), wanted, progress);
+    const QString source = qt(result.files.back().filename().string());
+    QString said;
+    if (!has_run(place, "cc", {"-std=c99", "-O1", "-o", "proof", source, "-lm"}, said)) {
+        return {"It could not be compiled: " + (said.isEmpty() ? QString("there is no C compiler (cc)") : said), false};
+    }
+    if (!has_run(place, place + "/proof", {}, said)) {
+        return {"NOT equal: " + said, false};
+    }
+    return {"Compiled, run and equal: value, slope and error at 200 points, within the table and beyond.", true};
+}
+
+}  // namespace
+
 void ExportDialog::prove() {
-    tables::ExportOptions wanted = options();
-    wanted.self_test = true;
+    try {
+        tables::ExportOptions wanted = options();
+        wanted.self_test = true;
+        ask_proof(wanted, table());
+    } catch (const core::Error& error) {  // said in the dialog, not behind it
+        proof_->setText("Not proved: " + qt(error.what()));
+        Q_EMIT proved(false);
+    }
+}
+
+void ExportDialog::ask_proof(const tables::ExportOptions& wanted, const tables::ForceTable& chosen) {
     proof_->setText("compiling …");
-    jobs_.start("export proof", "compiling and comparing", [this, wanted, chosen = table()](core::Progress& progress) {
-        const core::TemporaryFolder folder;
-        const auto result = tables::export_table(chosen, "c", folder.path() / (wanted.name + ".h"), wanted, progress);
-        const auto run = [&](const QString& program, const QStringList& arguments, QString& said) {
-            QProcess process;
-            process.setWorkingDirectory(qt(folder.path().string()));
-            process.setProcessChannelMode(QProcess::MergedChannels);
-            process.start(program, arguments);
-            const bool ended = process.waitForStarted() && process.waitForFinished(60000);
-            said = QString::fromUtf8(process.readAll()).trimmed();
-            return ended && process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0;
-        };
-        QString said, sentence;
-        bool equal = false;
-        const QString source = qt(result.files.back().filename().string());
-        if (!run("cc", {"-std=c99", "-O1", "-o", "proof", source, "-lm"}, said)) {
-            sentence = "It could not be compiled: " + (said.isEmpty() ? QString("there is no C compiler (cc)") : said);
-        } else {
-            equal = run(qt((folder.path() / "proof").string()), {}, said);
-            sentence =
-                equal
-                    ? QString(
-                          "Compiled, run and equal: value, slope and error at 200 points, within the table and beyond.")
-                    : "NOT equal: " + said;
-        }
-        return [this, sentence, equal] {
-            proof_->setText(sentence);
-            Q_EMIT proved(equal);
-        };
-    });
+    jobs_.start("export proof", "compiling and comparing",
+                [self = QPointer<ExportDialog>(this), wanted, chosen](core::Progress& progress) {
+                    Proof proof;
+                    try {
+                        proof = proof_of(chosen, wanted, progress);
+                    } catch (const core::Cancelled&) {
+                        throw;
+                    } catch (const core::Error& error) {
+                        proof.sentence = "Not proved: " + qt(error.what());
+                    }
+                    return [self, proof] {
+                        if (self) {
+                            self->proof_->setText(proof.sentence);
+                            Q_EMIT self->proved(proof.equal);
+                        }
+                    };
+                });
 }
 
 }  // namespace underbody::studio

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "studio/desktop/jobs.h"
-#include "studio/desktop/state/state.h"
+#include "studio/desktop/state/exports.h"
 #include "surrogates/tables/exports/export.h"
 
 class QBoxLayout;
@@ -27,13 +27,15 @@ class PlotView;
 class ExportDialog : public QDialog {
     Q_OBJECT
 public:
-    /// `file`: where the table's points stand as a CSV file, for the command that does the same.
+    /// `of`: the table of the study that the first one is.
     ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
-                 std::string file = {});
+                 TableOfStudy of = {});
     /// The command that writes the same.
     [[nodiscard]] QString command(const QString& path) const;
     /// Writes; throws core::Error.
     void write(const std::filesystem::path& path);
+    /// As the button does: what stands in the way is said in the dialog.
+    void write_to(const QString& path);
     /// Compiles what is written for C and compares it; the sentence that says how that went is in `proof`.
     void prove();
     [[nodiscard]] QString proof() const;
@@ -53,15 +55,19 @@ private:
     void add_policies(QFormLayout& form);
     void add_buttons(QBoxLayout& column);
     void refresh();
+    void ask_preview(const tables::ExportOptions& wanted, const tables::ForceTable& chosen);
+    void ask_proof(const tables::ExportOptions& wanted, const tables::ForceTable& chosen);
     void choose_and_write();
     [[nodiscard]] std::string format() const;
     [[nodiscard]] tables::ExportOptions options() const;
+    /// The policies beyond its ends are those of the table.
+    [[nodiscard]] bool as_fitted() const;
     /// The table with the chosen policies beyond its ends.
     [[nodiscard]] tables::ForceTable table() const;
 
     Jobs& jobs_;
     std::vector<std::shared_ptr<const tables::ForceTable>> all_;
-    std::string file_;
+    TableOfStudy of_;
     QComboBox* format_ = nullptr;
     QLineEdit* name_ = nullptr;
     QComboBox* frame_ = nullptr;

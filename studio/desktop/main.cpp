@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -28,8 +29,9 @@ struct Options {
     std::string screenshots;
     std::string log;
     std::string theme;
-    int width = 1440;
-    int height = 900;
+    std::optional<int> width, height;  ///< none: as it was left, the first time as large as the screen lets it
+    /// Of pictures without a word on it.
+    [[nodiscard]] QSize pictured() const { return {width.value_or(1440), height.value_or(900)}; }
 };
 
 /// -1: go on; else the exit code.
@@ -55,7 +57,9 @@ int parse(int argc, char** argv, Options& options) {
         ->type_name("FILE");
     app.add_option("--theme", options.theme, "light, dark, or system: the desktop's own (default: as the last time)")
         ->check(CLI::IsMember({"light", "dark", "system"}));
-    app.add_option("--width", options.width, "of the window, px")->check(CLI::Range(600, 8000));
+    app.add_option("--width", options.width,
+                   "of the window, px (default: as it was left; the first time what the screen has room for)")
+        ->check(CLI::Range(600, 8000));
     app.add_option("--height", options.height, "of the window, px")->check(CLI::Range(400, 8000));
     app.footer(
         "Examples:\n"
@@ -101,7 +105,8 @@ std::unique_ptr<underbody::core::VirtualDisplay> need_display(const Options& opt
         throw core::SystemError("display", "there is no display to open a window on", {},
                                 "log in to a desktop, use ssh -X, or take pictures with --screenshot FOLDER");
     }
-    auto display = std::make_unique<core::VirtualDisplay>(options.width + 80, options.height + 80);
+    auto display =
+        std::make_unique<core::VirtualDisplay>(options.pictured().width() + 80, options.pictured().height() + 80);
     ::setenv("DISPLAY", display->name().c_str(), 1);
     return display;
 }
@@ -156,8 +161,11 @@ int run(int argc, char** argv) {
     if (!options.theme.empty()) {
         set_theme(QString::fromStdString(options.theme));
     }
-    window.resize(options.width, options.height);
+    if (options.width || options.height) {
+        window.resize(options.width.value_or(window.width()), options.height.value_or(window.height()));
+    }
     if (!options.screenshots.empty()) {
+        window.resize(options.pictured());
         return take_screenshots(window, options.study, options.log, options.screenshots);
     }
     window.show();

@@ -324,8 +324,8 @@ void MainWindow::export_controller() {
     guarded("exporting for a controller", [&] {
         for (auto* panel : panels_) {
             if (auto* forces = dynamic_cast<ForcePanel*>(panel); forces != nullptr && forces->table()) {
-                auto* dialog =
-                    new ExportDialog(*jobs_, {forces->table()}, this, table_file(desk_->state(), forces->table_name()));
+                auto* dialog = new ExportDialog(*jobs_, {forces->table()}, this,
+                                                table_of_study(desk_->session(), forces->table_name()));
                 connect(dialog, &ExportDialog::written, this,
                         [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
                 connect(dialog, &ExportDialog::exported, this,

@@ -15,6 +15,7 @@
 #include <QMimeData>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QScreen>
 #include <QSettings>
 #include <QStackedWidget>
 #include <QStandardPaths>
@@ -53,6 +54,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int least_tree = 220;  ///< px: names of cases are read
+constexpr int most_below = 150;  ///< px, of what stands below where a workspace lacks room
+
 fs::path log_folder(bool remember) {
     return remember
                ? fs::path(QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString()) / "logs"
@@ -77,7 +81,8 @@ MainWindow::MainWindow(bool remember)
     setWindowTitle("Underbody Studio");
     setWindowIcon(program_icon());
     setAcceptDrops(true);
-    resize(1440, 900);
+    const QScreen* screen = QGuiApplication::primaryScreen();
+    resize(first_size(screen != nullptr ? screen->availableSize() : QSize()));
     ask = [this](const QString& title, const QString& text, const QString& yes) {
         QMessageBox box(QMessageBox::Question, title, text, QMessageBox::Cancel, this);
         auto* button = box.addButton(yes, QMessageBox::AcceptRole);
@@ -119,6 +124,11 @@ MainWindow::MainWindow(bool remember)
     follow_state();
     follow_session();
     problems_->note("Ready. Open a study with Ctrl+O, or drop its folder on the window.");
+}
+
+QSize MainWindow::first_size(const QSize& available) {
+    const QSize wanted(1440, 900), frame(8, 44);  // what a window manager puts around it
+    return available.isEmpty() ? wanted : wanted.boundedTo(available - frame);
 }
 
 // Jobs end before the widgets that their results would go to.
@@ -255,9 +265,15 @@ void MainWindow::follow_state() {
                          state.selection.size() == state.selected("picture").size();
     QWidget* wanted = empty ? static_cast<QWidget*>(first_) : picture ? panels_.back() : panels_[at];
     if (middle_->currentWidget() != wanted) {
+        const bool begins = middle_->currentWidget() == first_;
         middle_->setCurrentWidget(wanted);
         statusBar()->clearMessage();
-        QTimer::singleShot(0, this, [this] { update(); });  // laid out anew, nothing of the old stays
+        QTimer::singleShot(0, this, [this, begins] {
+            update();  // laid out anew, nothing of the old stays
+            if (begins) {
+                make_room();
+            }
+        });
     }
     const auto& history = desk_->history();
     const bool can_undo = history.position() > 0;
@@ -383,14 +399,40 @@ void MainWindow::showEvent(QShowEvent* event) {
     QMainWindow::showEvent(event);
     if (!laid_out_) {
         laid_out_ = true;
-        QSize needed;
-        for (const auto* panel : panels_) {
-            needed = needed.expandedTo(panel->minimumSizeHint());
-        }
-        const QSize left = size() - needed;
-        resizeDocks({tree_dock_}, {std::clamp(left.width() - 24, 220, 490)}, Qt::Horizontal);
-        resizeDocks({below_dock_}, {std::clamp(left.height() - 110, 100, 150)}, Qt::Vertical);
+        const QSize left = size() - needed();
+        resizeDocks({tree_dock_}, {std::clamp(left.width() - 16, least_tree, 490)}, Qt::Horizontal);
+        resizeDocks({below_dock_}, {std::clamp(left.height() - 110, 84, most_below)}, Qt::Vertical);
     }
+    QTimer::singleShot(0, this, &MainWindow::make_room);
+}
+
+void MainWindow::resizeEvent(QResizeEvent* event) {
+    QMainWindow::resizeEvent(event);
+    if (isVisible()) {
+        QTimer::singleShot(0, this, &MainWindow::make_room);
+    }
+}
+
+/// Of the workspace that needs most, with the bar that rolls it up and down.
+QSize MainWindow::needed() const {
+    QSize most;
+    for (const auto* panel : panels_) {
+        most = most.expandedTo(panel->minimumSizeHint());
+    }
+    return most + QSize(style()->pixelMetric(QStyle::PM_ScrollBarExtent, nullptr, this), 0);
+}
+
+/// The tree gives way before a workspace is rolled sideways, what stands below before it is rolled up and down.
+void MainWindow::make_room() {
+    const QMargins around = centralWidget()->layout()->contentsMargins();
+    const QSize lack = needed().grownBy(around) - centralWidget()->size();
+    const auto give = [this](QDockWidget* dock, int size, int by, int least, Qt::Orientation along) {
+        if (by > 0 && dock->isVisible() && !dock->isFloating() && size > least) {
+            resizeDocks({dock}, {std::max(least, size - by)}, along);
+        }
+    };
+    give(tree_dock_, tree_dock_->width(), lack.width(), least_tree, Qt::Horizontal);
+    give(below_dock_, below_dock_->height(), lack.height(), most_below, Qt::Vertical);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

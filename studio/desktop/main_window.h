@@ -34,6 +34,8 @@ class MainWindow : public QMainWindow {
 public:
     /// `remember`: window layout, recent studies and the log of the session are kept between starts.
     explicit MainWindow(bool remember);
+    /// What a new window is made as large as, on a screen that leaves it so much.
+    [[nodiscard]] static QSize first_size(const QSize& available);
     ~MainWindow() override;
 
     /// Opens a study folder in the background; what is wrong with it is shown, and the study that was open stays.
@@ -82,11 +84,14 @@ public:
 
 protected:
     void showEvent(QShowEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
     void closeEvent(QCloseEvent* event) override;
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
 
 private:
+    [[nodiscard]] QSize needed() const;
+    void make_room();
     void build_workspaces();
     void build_tree();
     void build_below();

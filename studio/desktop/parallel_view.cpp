@@ -34,6 +34,7 @@ void ParallelView::say(const QString& text) {
 
 void ParallelView::show_axes(std::vector<Axis> axes) {
     axes_ = std::move(axes);
+    pointed_out_.reset();
     chosen_ = std::min(chosen_, axes_.empty() ? 0 : axes_.size() - 1);
     setFocusPolicy(axes_.empty() ? Qt::NoFocus : Qt::StrongFocus);
     for (auto& axis : axes_) {
@@ -63,6 +64,13 @@ void ParallelView::show_brush(const std::map<std::string, std::array<double, 2>>
     marked_ = marked;
     bright_ = {};
     update();
+}
+
+void ParallelView::point_out(std::optional<std::size_t> row) {
+    if (pointed_out_ != row) {
+        pointed_out_ = row;
+        update();
+    }
 }
 
 double ParallelView::x_of(std::size_t axis) const {
@@ -146,6 +154,12 @@ void ParallelView::paintEvent(QPaintEvent*) {
     painter.drawPixmap(0, 0, pale_);
     painter.drawPixmap(0, 0, bright_);
     painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
+    if (pointed_out_) {
+        painter.setPen(QPen(palette().base().color(), 6));  // seen between many others
+        draw_line(painter, *pointed_out_);
+        painter.setPen(QPen(palette().text().color(), 3));
+        draw_line(painter, *pointed_out_);
+    }
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const Axis& axis = axes_[i];
         const double x = x_of(i);

@@ -6,6 +6,7 @@
 #include <QWidget>
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 class QPainter;
@@ -28,6 +29,9 @@ public:
     /// `marked`: rows whose lines are drawn strong, whatever is kept.
     void show_brush(const std::map<std::string, std::array<double, 2>>& brush, const std::vector<std::size_t>& kept,
                     const std::vector<std::size_t>& marked = {});
+    /// The line of a row, drawn over all others; none: none.
+    void point_out(std::optional<std::size_t> row);
+    [[nodiscard]] std::optional<std::size_t> pointed_out() const { return pointed_out_; }
     /// What stands there while there is nothing to show.
     void say(const QString& text);
     /// Room above the axes, px: of as many lines as the longest title takes.
@@ -63,6 +67,7 @@ private:
     std::vector<Axis> axes_;
     std::map<std::string, std::array<double, 2>> brush_;
     std::vector<std::size_t> kept_, marked_;
+    std::optional<std::size_t> pointed_out_;
     QPixmap pale_;    ///< all lines, drawn once
     QPixmap bright_;  ///< the kept ones
     QString empty_;

@@ -1,11 +1,15 @@
 #include "studio/desktop/parameter_row.h"
 
+#include <QApplication>
 #include <QBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QRegularExpression>
 #include <QSignalBlocker>
 #include <QSlider>
+#include <QStatusTipEvent>
 #include <QToolButton>
+#include <QToolTip>
 #include <cmath>
 
 #include "core/text.h"
@@ -17,6 +21,16 @@ namespace underbody::studio {
 
 namespace {
 constexpr int steps = 1000;
+}
+
+void refuse_decimal_comma(const std::string& text) {
+    static const QRegularExpression number("^\\s*[-+]?\\d*,\\d");
+    if (number.match(qt(text)).hasMatch()) {
+        std::string right = text;
+        right[right.find(',')] = '.';
+        throw core::InputError("parse", "'" + text + "' is a number with a decimal comma", {},
+                               "write it with '.' as decimal point: " + right);
+    }
 }
 
 NumberEdit::NumberEdit(const std::string& unit, const std::string& shown, QWidget* parent)
@@ -37,14 +51,15 @@ QString NumberEdit::text_of(double value) const {
 
 void NumberEdit::show_number(std::optional<double> value) {
     value_ = value;
+    if (hasFocus() && isModified()) {
+        return;  // what is being typed stays, and the tip that says why it is refused
+    }
+    setText(value ? text_of(*value) : QString());
+    setModified(false);
+    setStyleSheet({});
     if (value) {
         setToolTip(
             qt(core::format_number(core::convert(*value, unit_, shown_), 15) + " " + (shown_ == "1" ? "" : shown_)));
-    }
-    if (!(hasFocus() && isModified())) {
-        setText(value ? text_of(*value) : QString());
-        setModified(false);
-        setStyleSheet({});
     }
 }
 
@@ -56,6 +71,7 @@ double NumberEdit::parsed(const QString& text) const {
     // Units as people write them, back to how files write them.
     plain.replace(QChar(0x2212), "-").replace(QChar(0xb0) + QString("C"), "degC").replace(QChar(0xb0), "deg");
     plain.replace(QChar(0xb2), "^2").replace(QChar(0xb3), "^3").replace(QChar(0xb7), " ");
+    refuse_decimal_comma(plain.toStdString());
     if (const auto number = core::parse_number(plain.toStdString())) {
         return core::convert(*number, shown_, unit_);  // a bare number is in the unit that stands there
     }
@@ -72,9 +88,16 @@ void NumberEdit::take() {
         setStyleSheet({});
         Q_EMIT entered(value);
     } catch (const core::Error& error) {
-        setStyleSheet("QLineEdit { border: 2px solid #d55e00; }");
-        setToolTip(qt(error.what()));
+        refuse(qt(error.what()));
     }
+}
+
+void NumberEdit::refuse(const QString& why) {
+    setStyleSheet("QLineEdit { border: 2px solid #d55e00; }");
+    setToolTip(why);
+    QToolTip::showText(mapToGlobal(rect().bottomLeft()), why, this);
+    QStatusTipEvent told(why);
+    QApplication::sendEvent(this, &told);  // up to the window, whose status line shows it
 }
 
 void NumberEdit::keyPressEvent(QKeyEvent* event) {

@@ -5,12 +5,16 @@
 #include <QString>
 #include <QWidget>
 #include <optional>
+#include <string>
 
 class QLabel;
 class QSlider;
 class QToolButton;
 
 namespace underbody::studio {
+
+/// Throws core::InputError for a number with a decimal comma ("0,5", "0,28 N").
+void refuse_decimal_comma(const std::string& text);
 
 /// Shows every digit that the number has (at most 12). Takes a text with any unit of its kind on Enter or when the
 /// focus leaves; what does not parse turns red and is not taken. Up and down step by one in the second digit.
@@ -33,6 +37,8 @@ protected:
 
 private:
     void take();
+    /// Frame, tip and the window's status line say why.
+    void refuse(const QString& why);
     std::string unit_, shown_;
     std::optional<double> value_;
 };

@@ -75,29 +75,34 @@ void ProblemList::hide_note(QTreeWidgetItem& item) {
 }
 
 void ProblemList::add(const core::Problem& problem, const QString& said_hint) {
-    using Severity = core::Problem::Severity;
     // Errors of a step are one text, with what to do on its own line.
     const QStringList parts = QString::fromStdString(problem.message).split("\n  hint: ");
     const QString hint = said_hint.isEmpty() ? parts.value(1) : said_hint;
-    // What is found again each time something is drawn stands there once, with the time of the last.
     const QString place = QString::fromStdString(problem.place.text());
     const QString message = parts.front();
     for (int i = topLevelItemCount() - 1; i >= std::max(0, topLevelItemCount() - 200); --i) {
         QTreeWidgetItem* known = topLevelItem(i);
-        if (problem.severity != Severity::note && same_place(known->data(2, whole_text).toString(), place) &&
+        if (known->data(0, Qt::UserRole).toInt() == static_cast<int>(problem.severity) &&
+            same_place(known->data(2, whole_text).toString(), place) &&
             known->data(1, whole_text).toString() == message) {
             known->setText(0, QTime::currentTime().toString("HH:mm:ss"));
             return;
         }
     }
+    append(problem.severity, message, place, hint);
+}
+
+void ProblemList::append(core::Problem::Severity severity, const QString& message, const QString& place,
+                         const QString& hint) {
+    using Severity = core::Problem::Severity;
     constexpr int most = 2000;
     while (topLevelItemCount() >= most) {
         delete takeTopLevelItem(0);
     }
     auto* item = new QTreeWidgetItem(this);
-    const auto icon = problem.severity == Severity::error     ? QStyle::SP_MessageBoxCritical
-                      : problem.severity == Severity::warning ? QStyle::SP_MessageBoxWarning
-                                                              : QStyle::SP_MessageBoxInformation;
+    const auto icon = severity == Severity::error     ? QStyle::SP_MessageBoxCritical
+                      : severity == Severity::warning ? QStyle::SP_MessageBoxWarning
+                                                      : QStyle::SP_MessageBoxInformation;
     item->setIcon(0, style()->standardIcon(icon));
     item->setText(0, QTime::currentTime().toString("HH:mm:ss"));
     item->setText(1, without_temporary_folders(message));
@@ -108,18 +113,18 @@ void ProblemList::add(const core::Problem& problem, const QString& said_hint) {
         item->setData(column, whole_text, whole[column - 1]);
         item->setToolTip(column, whole[column - 1]);
     }
-    item->setData(0, Qt::UserRole, static_cast<int>(problem.severity));
+    item->setData(0, Qt::UserRole, static_cast<int>(severity));
     hide_note(*item);
     if (!hint.isEmpty()) {
         setColumnHidden(3, false);  // until then the sentences have its room
     }
     scrollToItem(item);
-    if (problem.severity != Severity::note) {
+    if (severity != Severity::note) {
         Q_EMIT counted(++count_);
     }
 }
 
-void ProblemList::note(const QString& text) { add({core::Problem::Severity::note, text.toStdString(), {}}); }
+void ProblemList::note(const QString& text) { append(core::Problem::Severity::note, text, {}, {}); }
 
 QString ProblemList::text() const {
     QString result;

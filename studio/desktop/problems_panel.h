@@ -15,7 +15,9 @@ class ProblemList : public QTreeWidget {
     Q_OBJECT
 public:
     explicit ProblemList(QWidget* parent);
+    /// What is found, about something: what stands there already is not added again, it gets the time of the last.
     void add(const core::Problem& problem, const QString& hint = {});
+    /// What has happened: as often as it did.
     void note(const QString& text);
     /// Tab-separated text of all lines, for reports of defects.
     [[nodiscard]] QString text() const;
@@ -25,6 +27,7 @@ Q_SIGNALS:
     void counted(int count);
 
 private:
+    void append(core::Problem::Severity severity, const QString& message, const QString& place, const QString& hint);
     void hide_note(QTreeWidgetItem& item);
     QAction* without_notes_ = nullptr;
     int count_ = 0;

@@ -22,6 +22,7 @@
 #include <vtkScalarBarActor.h>
 #include <vtkSphereSource.h>
 #include <vtkTextProperty.h>
+#include <vtkTextRenderer.h>
 
 #include <QBuffer>
 #include <QImage>
@@ -111,11 +112,8 @@ void Scene::Parts::dress_bar() {
     bar->SetLookupTable(colours);
     bar->SetNumberOfLabels(5);
     bar->SetUnconstrainedFontSize(true);
-    bar->SetBarRatio(0.25);
     bar->SetVerticalTitleSeparation(10);
-    bar->SetWidth(0.11);
     bar->SetHeight(0.62);
-    bar->SetPosition(0.875, 0.2);
     bar->SetLabelFormat("%.3g");
     bar->SetMaximumNumberOfColors(256);
     dress_text(*bar->GetTitleTextProperty(), 15);
@@ -183,6 +181,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
         auto& parts = *static_cast<Parts*>(data);
         parts.soon.stop();  // drawn now, whoever asked
         parts.size_marker();
+        parts.size_bar();
         parts.choose_drawn();
     });
     p.renderer->AddObserver(vtkCommand::StartEvent, p.before_drawing);
@@ -219,6 +218,35 @@ void Scene::Parts::size_marker() {
     if (now[2] != wide || now[3] != high) {
         marker->SetViewport(0, 0, wide, high);
     }
+}
+
+/// The bar stands as far from the edge as its longest number and its title ask for.
+void Scene::Parts::size_bar() {
+    const double wide = std::max(1, window->GetSize()[0]);
+    const auto room_of = [this](vtkTextProperty& property, const std::string& text) {
+        std::array<int, 4> box{};
+        auto* renderer_of_text = vtkTextRenderer::GetInstance();
+        const bool known = renderer_of_text != nullptr &&
+                           renderer_of_text->GetBoundingBox(&property, text, box.data(), window->GetDPI());
+        return known ? box[1] - box[0] + 1 : 9 * static_cast<int>(text.size());
+    };
+    const double* range = colours->GetTableRange();
+    const int labels = bar->GetNumberOfLabels();
+    int numbers = 0;
+    for (int i = 0; i < labels; ++i) {
+        const double value = range[0] + (range[1] - range[0]) * i / std::max(1, labels - 1);
+        numbers =
+            std::max(numbers, room_of(*bar->GetLabelTextProperty(), QString::asprintf("%.3g", value).toStdString()));
+    }
+    const char* title = bar->GetTitle();
+    const int words = title != nullptr ? room_of(*bar->GetTitleTextProperty(), title) : 0;
+    constexpr int pads = 12;  // beside colours, numbers and edge
+    const double thick = std::max(0.0275 * wide, 8.0 * widget->devicePixelRatioF());
+    const double room =
+        std::clamp(std::max({0.11 * wide, thick + numbers + pads, 1.0 * words + pads}), 1.0, 0.5 * wide);
+    bar->SetWidth(room / wide);
+    bar->SetBarRatio(thick / room);
+    bar->SetPosition(std::min(0.875, 1 - room / wide), 0.2);
 }
 
 Scene::~Scene() {

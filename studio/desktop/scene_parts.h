@@ -107,6 +107,7 @@ struct Scene::Parts : QObject {
     void dress_axes();
     void dress_dot();
     void size_marker();
+    void size_bar();
     void ask_for_whole();
     /// Of the zones that are seen.
     void show_actors(bool shown);

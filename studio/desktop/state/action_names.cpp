@@ -65,15 +65,18 @@ void add_operation(const State& state, Words& words) {
 }
 
 /// Of the table as `study run` writes it.
-std::string export_command(const State& state, const Words& words) {
+std::string export_command(const State& state, const Session& session, const Words& words) {
     const auto at = state.exports.find(words.at(1));
     if (at == state.exports.end()) {
         return {};
     }
     const ExportRecord& record = at->second;
-    Words line = {"underbody", "export",      table_file(state, record.table),
-                  "--format",  record.format, "--out",
-                  words[1],    "--name",      record.name};
+    const TableOfStudy table = table_of_study(session, record.table);
+    if (table.name.empty()) {
+        return {};
+    }
+    Words line = {"underbody", "export", table.file, "--format", record.format,
+                  "--out",     words[1], "--name",   record.name};
     if (record.frame != "up") {
         line.insert(line.end(), {"--frame", record.frame});
     }
@@ -90,7 +93,7 @@ std::string export_command(const State& state, const Words& words) {
     if (!range.empty()) {
         line.insert(line.end(), {"--range", range});
     }
-    return line_of(line);
+    return table.line(line);
 }
 
 std::string table_command(const State& state, const Words& words) {
@@ -356,7 +359,7 @@ std::string command_of(const State& after, const Words& words, const Session& se
         return line_of(command_of_measurement(after.study, words.at(1), after.measured.at(words.at(1))));
     }
     if (verb == "exported") {
-        return export_command(after, words);
+        return export_command(after, session, words);
     }
     if (verb == "vary" || verb == "brush") {
         return sweep_command(after, session);

@@ -12,6 +12,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QMouseEvent>
 #include <QPushButton>
 #include <QTabBar>
 #include <QTableView>
@@ -31,6 +32,7 @@
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/force_panel.h"
+#include "studio/desktop/parallel_view.h"
 #include "studio/desktop/pictures_panel.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/problems_panel.h"
@@ -157,6 +159,17 @@ TEST_F(Window, PicturesOfTheKeptCasesStandBesideEachOther) {
     act("brush gap=2.5mm:10mm");
     settle(*window_);
     EXPECT_EQ(pictures.list()->count(), 3) << "those that the brush keeps";
+    auto& lines = panel<ParallelView>();
+    EXPECT_FALSE(lines.pointed_out());
+    auto* place = pictures.list()->viewport();
+    const QPoint on = pictures.list()->visualItemRect(pictures.list()->item(1)).center();
+    QMouseEvent move(QEvent::MouseMove, on, place->mapToGlobal(on), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+    QApplication::sendEvent(place, &move);
+    ASSERT_TRUE(lines.pointed_out()) << "the line of the picture under the mouse";
+    EXPECT_EQ(*lines.pointed_out(), panel<ExplorePanel>().kept().at(1));
+    QEvent leave(QEvent::Leave);
+    QApplication::sendEvent(place, &leave);
+    EXPECT_FALSE(lines.pointed_out());
     pictures.list()->setCurrentRow(1);
     ASSERT_EQ(window_->desk().state().selected("case").size(), 1U);
     EXPECT_EQ(window_->desk().state().selected("case").front(), pictures.list()->item(1)->text().toStdString());

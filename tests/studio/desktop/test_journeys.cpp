@@ -4,6 +4,7 @@
 
 #include <QApplication>
 #include <QComboBox>
+#include <QDockWidget>
 #include <QLabel>
 #include <QScrollArea>
 #include <QScrollBar>
@@ -248,6 +249,37 @@ TEST_F(Journey, EveryWorkspaceFitsALaptop) {
             EXPECT_EQ(area->horizontalScrollBar()->maximum(), 0) << workspace;
         }
     }
+}
+
+// A new window fits the screen; where it is narrower than before the tree gives way, not the numbers.
+TEST_F(Journey, ASmallerScreenShowsTheNumbersWhole) {
+    for (const QSize screen : {QSize(1280, 800), QSize(1366, 728), QSize(1024, 600)}) {
+        const QSize first = MainWindow::first_size(screen);
+        EXPECT_LT(first.width(), screen.width());
+        EXPECT_LT(first.height(), screen.height() - 30) << "the window's title has room, too";
+    }
+    EXPECT_EQ(MainWindow::first_size({1920, 1080}), QSize(1440, 900));
+    window_->resize(1440, 900);
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    auto* tree = window_->findChild<QDockWidget*>("study_dock");
+    window_->resizeDocks({tree}, {490}, Qt::Horizontal);
+    settle(*window_);
+    window_->resize(MainWindow::first_size({1280, 800}));
+    settle(*window_);
+    for (auto* area : window_->centralWidget()->findChildren<QScrollArea*>(QString(), Qt::FindDirectChildrenOnly)) {
+        EXPECT_EQ(area->horizontalScrollBar()->maximum(), 0);
+    }
+    int seen = 0;
+    for (const auto* number : panel<DesignPanel>().findChildren<NumberEdit*>()) {
+        if (const QRect part = number->visibleRegion().boundingRect(); !part.isEmpty()) {
+            EXPECT_EQ(part.width(), number->width()) << number->accessibleName().toStdString();
+            ++seen;
+        }
+    }
+    EXPECT_GE(seen, 3);
+    EXPECT_GE(tree->width(), 200);
 }
 
 TEST_F(Journey, CurvesUnderAComparisonHaveRoom) {

@@ -19,6 +19,7 @@
 #include <QSettings>
 #include <QSlider>
 #include <QStandardPaths>
+#include <QStatusBar>
 #include <QTableWidget>
 #include <QTest>
 #include <cmath>
@@ -42,6 +43,7 @@
 #include "studio/desktop/region_panel.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/state/exports.h"
+#include "studio/desktop/state/words.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/figures/render.h"
 #include "surrogates/tables/fit/force_table.h"
@@ -145,17 +147,17 @@ TEST_F(Window, ShowsTheBodyOfTheLibraryAndUndoBringsItBack) {
     options.panels = 0;
     const auto body = geometry::read_body(computed_study() / "shapes" / "ellipse.toml", options);
     EXPECT_DOUBLE_EQ(design.shown()->mass.volume, body.mass.volume);
-    const QString shown = design.card()->item(0, 1)->text();
-    EXPECT_EQ(shown.toStdString(), core::format_number(1e6 * body.mass.volume, 6) + " cm³");
-    EXPECT_FALSE(design.card()->item(0, 2)->text().isEmpty()) << "before";
-    const auto card = [&](const QString& name) {
+    const auto card = [&](const QString& name, int column = 1) {
         for (int row = 0; row < design.card()->rowCount(); ++row) {
             if (design.card()->item(row, 0)->text() == name) {
-                return design.card()->item(row, 1)->text();
+                return design.card()->item(row, column)->text();
             }
         }
         return QString("no such row");
     };
+    EXPECT_EQ(card("volume").toStdString(), core::format_number(1e6 * body.mass.volume, 6) + " cm³");
+    EXPECT_FALSE(card("volume", 2).isEmpty()) << "before";
+    EXPECT_EQ(design.card()->item(0, 0)->text(), "lift (nearest)") << "seen in the smallest card";
     EXPECT_TRUE(card("lift (nearest)").endsWith("N")) << card("lift (nearest)").toStdString();
     EXPECT_TRUE(card("stable gaps (nearest)").endsWith("mm")) << card("stable gaps (nearest)").toStdString();
     for (int row = 0; row < design.card()->rowCount(); ++row) {
@@ -248,6 +250,27 @@ TEST_F(Window, ANumberIsShownWithEveryDigit) {
     EXPECT_DOUBLE_EQ(length.parsed("0.5 cm"), 0.005);
     EXPECT_DOUBLE_EQ(length.parsed("4"), 0.004);
     EXPECT_THROW(static_cast<void>(length.parsed("4 N")), core::Error);
+}
+
+// A number with a comma only turned its frame orange.
+TEST_F(Window, ANumberThatIsRefusedSaysWhy) {
+    NumberEdit weight("N", "N");
+    EXPECT_THROW(static_cast<void>(weight.parsed("0,28 N")), core::InputError);
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    NumberEdit* field = nullptr;
+    for (auto* one : panel<ForcePanel>().findChildren<NumberEdit*>()) {
+        field = one->accessibleName() == "net weight" ? one : field;
+    }
+    ASSERT_NE(field, nullptr);
+    field->selectAll();
+    QTest::keyClicks(field, "0,28 N");
+    QTest::keyClick(field, Qt::Key_Return);
+    EXPECT_TRUE(field->toolTip().contains("decimal comma")) << field->toolTip().toStdString();
+    EXPECT_TRUE(field->toolTip().contains("0.28 N")) << "what is right";
+    EXPECT_EQ(window_->statusBar()->currentMessage(), field->toolTip());
+    EXPECT_FALSE(window_->desk().state().tables.contains("lift")) << "not taken";
 }
 
 TEST_F(Window, TheMotionIsThatOfTheModelThatIsShown) {
@@ -419,6 +442,13 @@ TEST_F(Window, AProblemThatIsFoundAgainStandsThereOnce) {
     EXPECT_EQ(list->topLevelItemCount(), before + 1);
     list->add({core::Problem::Severity::warning, "the turn is not supported", {"b.csv", {}, {}, {}}});
     EXPECT_EQ(list->topLevelItemCount(), before + 2) << "in another file it is another one";
+    const core::Problem remark{core::Problem::Severity::note, "interpolated: leave-one-out error 0.02 N", {}};
+    list->add(remark);
+    list->add(remark);
+    EXPECT_EQ(list->topLevelItemCount(), before + 3) << "notes about the data, too";
+    list->note("Exported lift.h again.");
+    list->note("Exported lift.h again.");
+    EXPECT_EQ(list->topLevelItemCount(), before + 5) << "what happens twice is told twice";
 }
 
 // Tables and Stability rest on the same points: what is said of them is said once, of the table that the study names.
@@ -597,11 +627,14 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     act("workspace tables");
     settle(*window_);
     ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
-                                            table_file(window_->desk().state(), "lift"));
+                                            table_of_study(window_->desk().session(), "lift"));
     settle(*window_);
-    EXPECT_TRUE(dialog->command("lift.h").startsWith(
-        "underbody export " + QString::fromStdString(computed_study().string()) + "/report/exports/lift.csv "))
+    const QString study = QString::fromStdString(computed_study().string());
+    EXPECT_TRUE(dialog->command("lift.h").startsWith("underbody study run " + study + " && underbody export " + study +
+                                                     "/report/exports/lift.csv "))
         << dialog->command("lift.h").toStdString();
+    EXPECT_TRUE(dialog->command("lift.h").contains("# with \"csv\" among the exports"))
+        << "the study writes no points yet";
     EXPECT_TRUE(dialog->preview().contains("#ifndef")) << dialog->preview().left(300).toStdString();
     EXPECT_FALSE(dialog->error()->isVisibleTo(dialog)) << "equal to the table";
     for (auto* edit : dialog->findChildren<QLineEdit*>()) {
@@ -617,6 +650,77 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();
     dialog->write(folder_.path() / "lift.h");
     EXPECT_EQ(core::read_file(folder_.path() / "lift.h").substr(0, 40), dialog->preview().toStdString().substr(0, 40));
+    delete dialog;
+}
+
+/// Carries out a line of commands that are joined by "&&".
+void carry_out(const QString& line) {
+    for (const auto& one : line.split(" && ")) {
+        Words words = words_of(one.toStdString());
+        ASSERT_EQ(words.front(), "underbody");
+        words.erase(words.begin());
+        const auto run = test::run_underbody(words);
+        EXPECT_EQ(run.exit_code, 0) << one.toStdString() << "\n" << run.errors;
+    }
+}
+
+// The command beside an export runs wherever the report went, and `study why` knows what the window writes.
+TEST_F(Window, AnExportOfAStudysTableIsTheStudys) {
+    const fs::path study = copy_of_study();
+    std::string text = core::read_file(study / "study.toml");
+    text.insert(text.find("net_weight"), "exports = [\"c\", \"csv\"]\n");
+    core::write_file(study / "study.toml", text);
+    fs::remove_all(study / "report");
+    const auto run = test::run_underbody({"study", "run", study.string(), "--no-pictures", "--report",
+                                          (folder_.path() / "elsewhere" / "index.html").string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    open(study);
+    act("workspace tables");
+    settle(*window_);
+    const auto dialog_of = [&] {
+        return new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+                                table_of_study(window_->desk().session(), "lift"));
+    };
+    auto* dialog = dialog_of();
+    const QString by_command = QString::fromStdString((folder_.path() / "by_command.h").string());
+    const fs::path by_window = folder_.path() / "by_window.h";
+    EXPECT_TRUE(dialog->command(by_command).startsWith("underbody study run ")) << "its points stand elsewhere";
+    carry_out(dialog->command(by_command));
+    EXPECT_TRUE(fs::exists(by_command.toStdString()));
+    dialog->write(by_window);
+    delete dialog;
+    dialog = dialog_of();
+    EXPECT_TRUE(dialog->command(by_command).startsWith("underbody export ")) << "they are there now";
+    delete dialog;
+    EXPECT_EQ(core::read_file(by_window), core::read_file(study / "report" / "exports" / "lift.h"));
+    const auto why = test::run_underbody({"study", "why", study.string(), by_window.string()});
+    EXPECT_EQ(why.exit_code, 0) << why.errors;
+    EXPECT_EQ(why.output.find("differs"), std::string::npos) << why.output;
+    core::write_file(study / "report" / "exports" / "lift.csv", "points of another run");
+    EXPECT_FALSE(table_of_study(window_->desk().session(), "lift").first.empty()) << "not those of the table as it is";
+}
+
+// What is wrong stands in the dialog (it stood behind it), and says what a number is written with.
+TEST_F(Window, TheExportDialogSaysWhatIsWrong) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    auto* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get());
+    settle(*window_);
+    for (auto* edit : dialog->findChildren<QLineEdit*>()) {
+        if (edit->placeholderText().startsWith("none")) {
+            QTest::keyClicks(edit, "0,5");
+        }
+    }
+    settle(*window_);
+    const auto labels = dialog->findChildren<QLabel*>();
+    EXPECT_TRUE(std::any_of(labels.begin(), labels.end(),
+                            [](const QLabel* label) { return label->text().contains("decimal point: 0.5"); }));
+    dialog->prove();
+    EXPECT_TRUE(dialog->proof().startsWith("Not proved")) << dialog->proof().toStdString();
+    dialog->write_to(QString::fromStdString((folder_.path() / "lift.h").string()));
+    EXPECT_TRUE(dialog->proof().startsWith("Not written")) << dialog->proof().toStdString();
+    EXPECT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
     delete dialog;
 }
 

@@ -101,6 +101,33 @@ TEST_F(OnScreen, AZoneHasAMenuInTheView) {
     EXPECT_GT(difference(before, picture()), 0.05);
 }
 
+// The numbers beside the colours are whole in a narrow view, too: a bar of +-237 Pa read "23" and "-23" once.
+TEST_F(OnScreen, NumbersOfTheColoursAreWhole) {
+    window_->resize(1280, 800);
+    window_->take_files({shipped("ellipse-h2-p0.csv"), shipped("ellipse-h3-p0.csv"), shipped("ellipse-h5-p0.csv"),
+                         shipped("ellipse-h10-p0.csv"), shipped("ellipse-h20-p0.csv"), shipped("ellipse-h50-p0.csv")});
+    settle(*window_);
+    for (const char* range : {"-237:237", "-178:178", "-0.000237:0.000237"}) {
+        act(std::string("fields range=") + range);
+        settle(*window_);
+        for (int cell = 0; cell < 6; ++cell) {
+            ASSERT_NE(view(cell), nullptr) << cell;
+            const QImage seen = picture(cell);
+            const auto ink = [&](int from, int to) {
+                int count = 0;
+                for (int x = from; x < to; ++x) {
+                    for (int y = 0; y < seen.height(); ++y) {
+                        count += qGray(seen.pixel(x, y)) < 120 ? 1 : 0;
+                    }
+                }
+                return count;
+            };
+            EXPECT_EQ(ink(seen.width() - 2, seen.width()), 0) << range << ": cut at the edge of view " << cell;
+            EXPECT_GT(ink(seen.width() * 2 / 3, seen.width() - 2), 20) << range << ": no numbers in view " << cell;
+        }
+    }
+}
+
 // All zones in plain colours while the body is chosen: a click takes one out or makes it part.
 TEST_F(OnScreen, TheBodyIsChosenByClicks) {
     window_->take_files({shipped("ellipse-h5-p0.csv")});
