@@ -13,14 +13,17 @@
 
 namespace underbody::discovery {
 
-/// Every measured channel over one and five horizons; the channel whose error falls most, in its noise, first.
+/// Every measured channel over one and five horizons; the channel whose error falls most, in its noise, first. Before:
+/// the model as declared with its logs taken at their word, but for what inputs did between their samples.
 void MotionLoop::measure_error() {
     const std::size_t runs = test_data_.runs.size();
     double most = -1e300;
     std::size_t chief = 0;
+    dynamics::RecordReading as_declared = model_.records;
+    as_declared.input_between = experiment_->reading().input_between;
     for (const double horizon : {options_.horizon, 5 * options_.horizon}) {
-        const Answer before = answer_of({}, horizon), after = answer_of(uses_, horizon);
-        if (before.all.record.empty() || after.all.record.empty()) {
+        const Answer before = answer_of({}, horizon, as_declared, test_data_), after = answer_of(uses_, horizon);
+        if (before.windows.front().record.empty() || after.windows.front().record.empty()) {
             continue;
         }
         for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -156,8 +159,7 @@ void MotionLoop::describe() {
                                    [](const auto& load) { return load.quantity == "lift_force"; });
     result_.problems.push_back(
         {core::Problem::Severity::note,
-         shape().words +
-             ": waves, forces with memory and numbers that differ from run to run are not looked for, and " +
+         shape().words + ": forces with memory are not looked for, and " +
              (lifts ? "of laws without a name one of the lift alone is put into the model, as a smooth correction"
                     : "no smooth correction is put into the model"),
          core::Place{data_.folder.string(), {}, {}, {}}});
