@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "surrogates/discovery/consequence.h"
+#include "surrogates/discovery/motion/motion_experiment_design.h"
 #include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
@@ -140,18 +141,13 @@ void MotionLoop::describe() {
             dynamics::motion_noise(shape(), data_, data_.runs[experiment_->records().front().run])[i]};
     }
     result_.stability = stability();
+    const MotionRig made_with{motion_, model_with({}), data_, experiment_->records(), inputs_, channels_, null_noise_};
     tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence_of_runs,
-          [](const FittedHypothesis&, const FittedHypothesis& rival) {
-              return "runs in which " + list_of(rival.hypothesis.depends_on) + " is excited apart from the rest";
+          [&](const FittedHypothesis& chosen, const FittedHypothesis& rival) {
+              return motion_told_apart(made_with, chosen, rival);
           }},
          result_);
-    const bool tied =
-        result_.verdict == "effect" && !result_.alternatives.empty() && result_.alternatives.front().probability > 0.2;
-    result_.next_experiment =
-        tied ? "To tell " + result_.effects.front().name + " from " + result_.alternatives.front().name + ": " +
-                   result_.alternatives.front().told_apart_by + "."
-             : "No further experiment is designed for " + shape().words +
-                   "; runs in other states and with other inputs would show effects below the limits given here.";
+    next_motion_experiment(made_with, fitted_, attribution_, result_);
     for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_, data_)}) {
         result_.problems.insert(result_.problems.end(), more.begin(), more.end());
     }

@@ -59,8 +59,7 @@ MotionLoop::Answer MotionLoop::answer_of(const std::vector<dynamics::EffectUse>&
 MotionLoop::Answer MotionLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon,
                                          const dynamics::RecordReading& reading,
                                          const dynamics::Measurements& data) const {
-    Answer answer;
-    answer.uses = uses;
+    Answer answer{uses, reading, &data, horizon, {}, {}};
     dynamics::PredictOptions options;
     options.horizon = horizon;
     dynamics::Model model = model_with(uses);
@@ -102,11 +101,21 @@ WindowSquares MotionLoop::together(const Answer& answer) const {
     return all;
 }
 
-bool MotionLoop::falls(const Answer& before, const Answer& after) const {
+PairedFall MotionLoop::fall(const Answer& before, const Answer& after, double tail) const {
     const std::size_t runs = test_data_.runs.size();
-    return paired_fall(together(before).blocks(runs, blocks_wanted), together(after).blocks(runs, blocks_wanted),
-                       calibration_.fall_tail)
-        .falls();
+    return paired_fall(together(before).blocks(runs, blocks_wanted), together(after).blocks(runs, blocks_wanted), tail);
+}
+
+bool MotionLoop::falls(const Answer& before, const Answer& after) const {
+    const PairedFall chief = fall(before, after, calibration_.fall_tail);
+    if (chief.falls() || chief.rises() || !(chief.mean > 0)) {
+        return chief.falls();
+    }
+    // slow effects show over longer predictions: there as well, at the price that it has in heave
+    const auto longer = [](const Answer& answer, const MotionLoop& loop) {
+        return loop.answer_of(answer.uses, 5 * answer.horizon, answer.reading, *answer.data);
+    };
+    return fall(longer(before, *this), longer(after, *this), calibration_.fall_tail / 4).falls();
 }
 
 double MotionLoop::Twins::error(std::size_t channel) const {

@@ -81,6 +81,9 @@ private:
     /// What a model predicts of the held-out runs.
     struct Answer {
         std::vector<dynamics::EffectUse> uses;
+        dynamics::RecordReading reading;
+        const dynamics::Measurements* data = nullptr;
+        double horizon = 0;
         std::vector<dynamics::MotionRunPrediction> runs;
         std::vector<WindowSquares> windows;  ///< by channel of channels_, SI
         [[nodiscard]] double error(std::size_t channel, std::size_t count) const {
@@ -94,6 +97,7 @@ private:
                                    const dynamics::RecordReading& reading, const dynamics::Measurements& data) const;
     /// Of all channels together, in units of their noise.
     [[nodiscard]] WindowSquares together(const Answer& answer) const;
+    [[nodiscard]] PairedFall fall(const Answer& before, const Answer& after, double tail) const;
     [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
     /// Twins of the held-out windows: the model with these effects and the noise of the sensors alone. By channel of
     /// channels_, in SI.

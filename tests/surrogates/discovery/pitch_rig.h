@@ -78,6 +78,7 @@ struct PitchRig {
     std::size_t late = 0;                         ///< rows by which the inputs are logged after they acted
     double logged_force = 1, logged_moment = 1;   ///< of the logged inputs over those that acted
     std::function<double(std::size_t run)> zero;  ///< of the gap's sensor, m
+    std::function<double(double t)> added_force, added_moment;  ///< to what the controller commands
 };
 
 /// What is logged of an input that acted.
@@ -120,8 +121,10 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
             before += 0.15 * (read_gap - before);
             before_pitch += 0.15 * (read_pitch - before_pitch);
             const double u = body.weight + rig.gain * (0.5 * (target - read_gap) - 0.15 * rate_gap * dt / 0.04) +
-                             0.004 * std::sin(1.7 * t + phase);
-            const double m = rig.moment_input ? rig.gain * (0.03 * (lean - read_pitch) - 2e-4 * rate_pitch) : 0;
+                             0.004 * std::sin(1.7 * t + phase) + (rig.added_force ? rig.added_force(t) : 0);
+            const double m = rig.moment_input ? rig.gain * (0.03 * (lean - read_pitch) - 2e-4 * rate_pitch) +
+                                                    (rig.added_moment ? rig.added_moment(t) : 0)
+                                              : 0;
             time.push_back(t);
             gap.push_back(read_gap);
             pitch.push_back(read_pitch);
