@@ -304,6 +304,7 @@ void MotionLoop::guard() {
                  "interval: it is not named");
             cap_probabilities(attribution_, 0.5);
             result_.verdict = "none";
+            look_run_by_run();  // nothing is left that all runs have in common
         } else {
             quiet = rest_is_noise(named);
             if (!quiet && (correct(named) || share_left(declared, named) > calibration_.most_left)) {
