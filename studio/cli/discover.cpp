@@ -51,7 +51,7 @@ std::string limits_text(const discovery::Discovery& found) {
 }
 
 void print(Shell& shell, const discovery::Discovery& found, const std::filesystem::path& folder) {
-    const bool missing = found.verdict != "none";
+    const bool missing = found.verdict != "none", changed = missing || !found.mended.empty();
     std::string text = found.sentence + "\n";
     for (const discovery::FoundEffect& effect : found.effects) {
         text += "\n" + effect.name + ", probability " + discovery::probability_text(effect.probability) + "\n";
@@ -70,7 +70,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
     for (const discovery::ErrorChange& change : found.error) {
         text += "\nError of " + change.channel + discovery::horizon_text(change.horizon) +
                 discovery::error_is_on(found) + ": " +
-                (missing ? core::told(change.before.rmse, change.unit, 3) + " -> " +
+                (changed ? core::told(change.before.rmse, change.unit, 3) + " -> " +
                                core::told(change.after.rmse, change.unit, 3)
                          : core::told(change.before.rmse, change.unit, 3)) +
                 " (noise " + core::told(change.noise, change.unit, 3) + ")";
@@ -79,7 +79,7 @@ void print(Shell& shell, const discovery::Discovery& found, const std::filesyste
         text += "\n" + discovery::axis_text(axis);
     }
     text += "\n\nNext experiment: " + found.next_experiment + "\n";
-    text += missing ? "New model: " + (folder / "model.toml").string() +
+    text += changed ? "New model: " + (folder / "model.toml").string() +
                           (found.motion == "surface" ? " (predict and linear take it)\n"
                            : found.motion == "body"  ? " (predict and simulate take it)\n"
                                                      : " (simulate, predict, region and export take it)\n")

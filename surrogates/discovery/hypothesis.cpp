@@ -503,7 +503,7 @@ Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model) {
     }
     Touch touch;
     touch.input = !terms.actuator.ideal() || terms.thrust_loss != 0;
-    touch.gain = terms.actuator.gain != 1;
+    touch.gain = terms.actuator.gain != 1 || terms.pitch.moment_gain != 1 || terms.surface.thrust_gain != 1;
     touch.reading_late = terms.sensor_delay != 0;
     touch.delay = touch.reading_late || terms.actuator.delay != 0;
     touch.time = touch.delay || terms.actuator.lag > 0;
@@ -525,6 +525,50 @@ bool one_kin(const std::vector<std::string>& names) {
 
 bool is_scanned(const Hypothesis& hypothesis) {
     return dynamics::effect(hypothesis.names.front()).info().search.scanned;
+}
+
+std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
+    const std::vector<double> start = h.start();
+    if (is_scanned(h)) {
+        const double frequency = h.starts.empty() ? start[1] : h.starts.front()[1];
+        return {{1e-4, frequency, 0.0}, {1e-4, frequency, 1.5707963}};
+    }
+    std::vector<std::vector<double>> steps;
+    const auto step = [&](std::size_t j, double from) {
+        const FitParameter& p = h.parameters[j];
+        const double size = 0.05 * p.typical;
+        return from + size > p.upper ? from - size : from + size;
+    };
+    for (std::size_t j = 0; j < start.size(); ++j) {
+        std::vector<double> p = start;
+        if (j > 0) {
+            p.front() = step(0, p.front());  // a shape shows only beside a strength
+        }
+        p[j] = step(j, p[j]);
+        steps.push_back(std::move(p));
+    }
+    return steps;
+}
+
+void keep_shapes_inside(std::vector<Hypothesis>& list, double lowest_gap, double lowest_frequency) {
+    const double slowest = 2 * lowest_frequency;
+    std::erase_if(list, [&](Hypothesis& candidate) {
+        for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
+            FitParameter& parameter = candidate.parameters[j];
+            const dynamics::EffectUse& use = candidate.uses[candidate.slots[j].use];
+            if (is_scanned(candidate) && j == 1) {  // its frequency
+                parameter.lower = std::max(parameter.lower, slowest);
+                parameter.start = std::max(parameter.start, slowest);
+            } else if (dynamics::effect(use.name).info().parameters[candidate.slots[j].value].within_gaps) {
+                parameter.lower = std::max(parameter.lower, 0.1 * lowest_gap);
+                parameter.start = std::max(parameter.start, parameter.lower);
+            }
+            if (parameter.lower >= parameter.upper) {
+                return true;
+            }
+        }
+        return false;
+    });
 }
 
 double occam_factor(const Hypothesis& hypothesis, std::size_t data) {

@@ -97,6 +97,13 @@ Touch touch_of(const Hypothesis& hypothesis, const dynamics::Model& model);
 /// Effects that can stand in for parts of each other (EffectSearch::kin).
 bool one_kin(const std::vector<std::string>& names);
 
+/// Where a candidate is looked at when it is small: one set of numbers for each column of its answers.
+std::vector<std::vector<double>> small_steps(const Hypothesis& hypothesis);
+
+/// A wave of which no run shows a few cycles (four of `lowest_frequency`'s two), or an inertia that grows only far
+/// below every gap that was visited, is none that runs can show: it would pass for any slow change. m, Hz.
+void keep_shapes_inside(std::vector<Hypothesis>& list, double lowest_gap, double lowest_frequency);
+
 /// Frequencies that a scan asks, as if independent of each other.
 constexpr double frequencies_tried = 110;
 /// Amplitude, frequency and phase: begins where a scan over frequency says.

@@ -15,4 +15,14 @@ namespace underbody::discovery {
 double chance_among(const std::vector<const DesignMatrix*>& probes, const std::vector<double>& noise_like,
                     double observed, std::size_t block, std::uint64_t seed, core::Progress& progress);
 
+/// The columns of a list of probes.
+template <typename Probes>
+std::vector<const DesignMatrix*> columns_of(const Probes& probes) {
+    std::vector<const DesignMatrix*> columns;
+    for (const auto& probe : probes) {
+        columns.push_back(&probe.columns);
+    }
+    return columns;
+}
+
 }  // namespace underbody::discovery

@@ -372,6 +372,12 @@ TEST_F(ModelForces, WhatDiscoverFindsWrongWithTheLogsPredictReadsToo) {
         const nlohmann::json before = json({"predict", name + "/model.toml", "--data", name});
         EXPECT_GT(before["channels"]["gap"]["in_noise"].get<double>(), 5) << name;
     }
+    const std::string told = run_underbody({"discover", "sign/model.toml", "--data", "sign", "--out", "told",
+                                            "--placebo", "0", "--candidates", "linear_damping"},
+                                           folder_.path())
+                                 .output;
+    EXPECT_THAT(told, HasSubstr("New model: told/model.toml"));
+    EXPECT_THAT(told, HasSubstr(" mm -> ")) << "the error before and after";
 }
 
 TEST_F(ModelForces, ATurnedInputBesideAnEffectIsReadSoByPredictToo) {

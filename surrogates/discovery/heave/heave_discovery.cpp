@@ -192,45 +192,15 @@ void HeaveLoop::list_candidates() {
             return touch.input || (touch.reading_late && !records_.velocity_measured);
         });
     }
-    keep_shapes_inside();
-    for (Hypothesis& candidate : candidates_) {
-        if (is_scanned(candidate)) {
-            candidate.starts = experiment_->periodic_starts({}, null_noise_, 3);
-            std::erase_if(candidate.starts,
-                          [&](const std::vector<double>& start) { return start[1] < candidate.parameters[1].lower; });
-        }
-    }
-    std::erase_if(candidates_, [](const Hypothesis& h) { return is_scanned(h) && h.starts.empty(); });
-    keep_only(candidates_, options_.candidates);
-}
-
-/// A wave of which no run shows a few cycles, or an inertia that grows only far below every gap that was visited, is
-/// none that these runs can show: it would pass for any slow change.
-void HeaveLoop::keep_shapes_inside() {
     double lowest = 1e300;
     for (const std::size_t r : train_) {
         for (const double gap : records_.records[r].gap) {
             lowest = std::isfinite(gap) ? std::min(lowest, gap) : lowest;
         }
     }
-    const double slowest = 2 * experiment_->lowest_frequency();  // four cycles of the longest run
-    std::erase_if(candidates_, [&](Hypothesis& candidate) {
-        for (std::size_t j = 0; j < candidate.parameters.size(); ++j) {
-            FitParameter& parameter = candidate.parameters[j];
-            const dynamics::EffectUse& use = candidate.uses[candidate.slots[j].use];
-            if (is_scanned(candidate) && j == 1) {  // its frequency
-                parameter.lower = std::max(parameter.lower, slowest);
-                parameter.start = std::max(parameter.start, slowest);
-            } else if (dynamics::effect(use.name).info().parameters[candidate.slots[j].value].within_gaps) {
-                parameter.lower = std::max(parameter.lower, 0.1 * lowest);
-                parameter.start = std::max(parameter.start, parameter.lower);
-            }
-            if (parameter.lower >= parameter.upper) {
-                return true;
-            }
-        }
-        return false;
-    });
+    keep_shapes_inside(candidates_, lowest, lowest_frequency(experiment_->sampled()));
+    begin_scanned(candidates_, [&] { return experiment_->periodic_starts({}, null_noise_, 3); });
+    keep_only(candidates_, options_.candidates);
 }
 
 void HeaveLoop::fit_singles() {
@@ -363,80 +333,25 @@ void HeaveLoop::change_input(double seconds, double factor) {
     }
 }
 
-/// The effects that explain most alone, and that no other reading of the input could make up for: beside one of them a
-/// wrong clock or sign of the input hides, since the effect explains more than it does.
-std::vector<std::size_t> HeaveLoop::beside_the_input() const {
-    constexpr std::size_t most = 3;
-    std::vector<std::size_t> list;
-    for (std::size_t i = 0; i < singles_; ++i) {
-        const Touch touch = touch_of(fitted_[i].hypothesis, model_);
-        if (!touch.time && !touch.gain) {
-            list.push_back(i);
-        }
-    }
-    std::sort(list.begin(), list.end(),
-              [&](std::size_t a, std::size_t b) { return fitted_[a].score() < fitted_[b].score(); });
-    list.resize(std::min(most, list.size()));
-    return list;
-}
-
-double HeaveLoop::cost_with_input(double seconds, double times, const std::vector<std::size_t>& beside) {
-    change_input(-seconds, times);
-    HeaveNoise noise = null_noise_;
-    double cost = experiment_->fit_process({}, noise);
-    std::vector<double> innovations;
-    std::size_t with = fitted_.size();
-    double least_with = 1e300;
-    for (const std::size_t i : beside) {
-        // with the numbers of the input as it was recorded: a fit comes once the clock is nearly right
-        const FittedHypothesis& one = fitted_[i];
-        const double own =
-            experiment_->evaluate(one.hypothesis.with(one.fit.parameters), nullptr, noises_[i], innovations) +
-            one.occam;
-        if (own < least_with) {
-            least_with = own;
-            with = i;
-        }
-    }
-    if (with < fitted_.size() && least_with < cost && least_with < fitted_[with].score() - 10) {
-        cost = std::min(cost, fitted(fitted_[with].hypothesis, null_noise_).fitted.score());
-    }
-    change_input(seconds, 1 / times);
+/// Cost of the likeliest explanation where the input is read so.
+double HeaveLoop::cost_with_input(const InputReading& reading, const std::vector<std::size_t>& beside) {
+    change_input(-reading.early, reading.factor);
+    const double cost =
+        least_cost(beside, {[&] {
+                                HeaveNoise noise = null_noise_;
+                                return experiment_->fit_process({}, noise);
+                            },
+                            [&](std::size_t i) {
+                                const FittedHypothesis& one = fitted_[i];
+                                std::vector<double> innovations;
+                                return experiment_->evaluate(one.hypothesis.with(one.fit.parameters), nullptr,
+                                                             noises_[i], innovations) +
+                                       one.occam;
+                            },
+                            [&](std::size_t i) { return fitted_[i].score(); },
+                            [&](std::size_t i) { return fitted(fitted_[i].hypothesis, null_noise_).fitted.score(); }});
+    change_input(reading.early, 1 / reading.factor);
     return cost;
-}
-
-/// An input that acts before it was commanded, or that is a thousand times off or turned round, is no effect but a
-/// matter of the record.
-HeaveLoop::InputReading HeaveLoop::better_input() {
-    InputReading best;
-    double least = fitted_[best_single_].score() - 40;
-    const std::vector<std::size_t> beside = beside_the_input();
-    const auto attempt = [&](double seconds, double times) {
-        if (seconds < 0) {
-            return;
-        }
-        const double cost = cost_with_input(seconds, times, beside);
-        if (cost < least) {
-            least = cost;
-            best = {seconds, times};
-        }
-    };
-    for (const double seconds : {0.02, 0.04, 0.06, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0, 2.0}) {
-        attempt(seconds, 1);
-    }
-    // From the best of these half-way toward its neighbours and on: they lie up to twice as far apart.
-    for (double step = std::max(0.02, best.early / 4); step > 0.002 && best.early > 0; step /= 2) {
-        const double middle = best.early;
-        attempt(middle - step, 1);
-        attempt(middle + step, 1);
-    }
-    if (best.early == 0 && touch_of(fitted_[best_single_].hypothesis, model_).gain) {
-        least += 60;  // the same said with a name; the slip is the likelier story
-    }
-    for (const double times : {1e-3, 1e3, -1.0}) {
-        attempt(0, times);
-    }
-    return best;
 }
 
 namespace {
@@ -482,13 +397,20 @@ void HeaveLoop::check_input() {
     if (records_read_.input_between == dynamics::RecordReading::Between::unsaid) {
         experiment_->set_hold(true);  // whether it is held between samples was asked of an input that may be wrong
     }
-    const auto [early, factor] = better_input();
-    if (early == 0 && factor == 1) {
+    const std::vector<std::string> columns{"input_force"};
+    const std::vector<std::size_t> beside = beside_the_input(fitted_, singles_, model_);
+    const FittedHypothesis& single = fitted_[best_single_];
+    const InputReading found =
+        better_input({.columns = columns,
+                      .as_logged = single.score(),
+                      .gain = touch_of(single.hypothesis, model_).gain,
+                      .cost = [&](const InputReading& reading) { return cost_with_input(reading, beside); }});
+    if (found.as_logged()) {
         experiment_->set_hold(hold);
         return;
     }
     // A factor can be said with a name or a law of the input as well: the slip is the likelier story there.
-    const bool clock = factor == 1;
+    const bool clock = found.clock();
     const Answer before = clock ? best_answer() : answer_of({}, null_noise_);
     std::optional<Answer> law;
     if (clock) {
@@ -497,7 +419,7 @@ void HeaveLoop::check_input() {
     }
     const HeaveRecords as_logged = records_;
     const std::optional<HeaveRecords> test_as_logged = test_records_;
-    change_input(-early, factor);
+    change_input(-found.early, found.factor);
     leave_out_what_follows(records_);
     if (test_records_) {
         leave_out_what_follows(*test_records_);
@@ -511,19 +433,10 @@ void HeaveLoop::check_input() {
         fit_again();
         return;
     }
-    records_read_.input_advance += early;
-    records_read_.input_factor *= factor;
-    result_.mended = clock ? "input_force " + core::format_number(early, 2) + " s earlier"
-                           : "input_force times " + core::format_number(factor, 4);
-    if (clock) {
-        warn("the recorded input comes about " + core::format_number(early, 2) +
-             " s after the motion that it makes: the clocks of input_force and gap differ, or the vehicle has a law "
-             "that leads as much; the input was moved forward by that much");
-    } else {
-        warn("the motion fits an input_force " + core::format_number(factor, 4) + " times the recorded one: " +
-             (factor < 0 ? "its sign is turned round (up is positive)" : "its unit is wrong by a thousand") +
-             "; it was used so");
-    }
+    records_read_.input_advance += found.early;
+    records_read_.input_factor *= found.factor;
+    result_.mended = mended_text(found, columns);
+    warn(mended_warning(found, columns));
 }
 
 Discovery discover_heave(const dynamics::Model& model, const dynamics::Measurements& data,

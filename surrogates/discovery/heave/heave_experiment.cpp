@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numeric>
 
 #include "core/text.h"
@@ -15,8 +14,6 @@ namespace {
 
 constexpr double process_floor = 1e-12;  ///< m^2/s^3: below it nothing changes any more
 constexpr double process_ceiling = 1e-2;
-constexpr double highest_frequency = 4;  ///< Hz, of a periodic force that gap readings can show
-constexpr double two_pi = 6.283185307179586;
 constexpr double small_force = 0.003;  ///< N, of a smooth correction: scale of its coefficients
 constexpr double smooth_ridge = 0.5;   ///< their prior: a standard deviation of 1.4 times that scale
 
@@ -588,16 +585,18 @@ HeaveExperiment::Smooth HeaveExperiment::fit_smooth(const SmoothSet& set, const 
     return result;
 }
 
-double HeaveExperiment::lowest_frequency() const {
-    double longest = 1e-3;
-    for (const std::size_t r : chosen_) {
-        longest = std::max(longest, records_.records[r].time.back() - records_.records[r].time.front());
+std::vector<SampledRun> HeaveExperiment::sampled() const {
+    std::vector<SampledRun> runs;
+    const std::vector<std::size_t> begin = begins();
+    for (std::size_t g = 0; g < chosen_.size(); ++g) {
+        const HeaveRecord& record = records_.records[chosen_[g]];
+        runs.push_back({record.time, record.velocity.empty() ? 1U : 2U, begin[g]});
     }
-    return 2 / longest;
+    return runs;
 }
 
-HeaveExperiment::Line HeaveExperiment::line_at(double frequency, const std::vector<dynamics::EffectUse>& uses,
-                                               const HeaveNoise& noise, const std::vector<double>& base) const {
+WaveLine HeaveExperiment::line_at(double frequency, const std::vector<dynamics::EffectUse>& uses,
+                                  const HeaveNoise& noise, const std::vector<double>& base) const {
     // the innovations answer a small force as a linear system: one run each for sine and cosine
     constexpr double small = 1e-4;  // N
     std::vector<double> answer[2], moved;
@@ -610,96 +609,22 @@ HeaveExperiment::Line HeaveExperiment::line_at(double frequency, const std::vect
     for (int part = 0; part < 2; ++part) {
         std::vector<dynamics::EffectUse> with = uses;
         with.push_back(wave);
-        with.back().values = {small, frequency, part == 0 ? 0.0 : 0.25 * two_pi};
+        with.back().values = {small, frequency, part == 0 ? 0.0 : 1.5707963267948966};
         evaluate(with, nullptr, noise, moved);
         answer[part].resize(base.size());
         for (std::size_t i = 0; i < base.size(); ++i) {
             answer[part][i] = (base[i] - moved[i]) / small;
         }
     }
-    double ss = 0, sc = 0, cc = 0, s = 0, c = 0;
-    for (std::size_t i = 0; i < base.size(); ++i) {
-        ss += answer[0][i] * answer[0][i];
-        sc += answer[0][i] * answer[1][i];
-        cc += answer[1][i] * answer[1][i];
-        s += answer[0][i] * base[i];
-        c += answer[1][i] * base[i];
-    }
-    const double determinant = ss * cc - sc * sc;
-    if (!(determinant > 1e-12 * ss * cc)) {
-        return {frequency, 0, 0, 0};
-    }
-    const double a = (cc * s - sc * c) / determinant;  // of the sine
-    const double b = (ss * c - sc * s) / determinant;  // of the cosine
-    return {frequency, a * s + b * c, std::hypot(a, b), std::atan2(b, a)};
-}
-
-/// Peaks of the innovations' own periodogram: a line in the force is one in them too, as narrow as the runs are long.
-std::vector<double> HeaveExperiment::peaks_of(const std::vector<double>& innovations, std::size_t count) const {
-    constexpr std::size_t most = 4000;
-    const double first = lowest_frequency();
-    const double step = std::max(0.125 * first, (highest_frequency - first) / static_cast<double>(most));
-    const std::vector<std::size_t> begin = begins();
-    std::vector<double> power;
-    for (double frequency = first; frequency < highest_frequency; frequency += step) {
-        std::complex<double> sum[2];
-        for (std::size_t g = 0; g + 1 < begin.size(); ++g) {
-            const HeaveRecord& record = records_.records[chosen_[g]];
-            const std::size_t channels = record.velocity.empty() ? 1 : 2;
-            for (std::size_t k = 0; k < record.time.size(); ++k) {
-                const double angle = two_pi * frequency * record.time[k];
-                const std::complex<double> turn(std::cos(angle), std::sin(angle));
-                for (std::size_t c = 0; c < channels; ++c) {
-                    sum[c] += turn * innovations[begin[g] + channels * k + c];
-                }
-            }
-        }
-        power.push_back(std::norm(sum[0]) + std::norm(sum[1]));
-    }
-    std::vector<std::size_t> peaks;
-    for (std::size_t k = 0; k < power.size(); ++k) {
-        if ((k == 0 || power[k] >= power[k - 1]) && (k + 1 == power.size() || power[k] > power[k + 1])) {
-            peaks.push_back(k);
-        }
-    }
-    std::sort(peaks.begin(), peaks.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
-    std::vector<double> frequencies;
-    for (std::size_t k = 0; k < std::min(count, peaks.size()); ++k) {
-        frequencies.push_back(first + step * static_cast<double>(peaks[k]));
-    }
-    return frequencies;
+    return wave_line(frequency, answer[0], answer[1], base);
 }
 
 std::vector<std::vector<double>> HeaveExperiment::periodic_starts(const std::vector<dynamics::EffectUse>& uses,
                                                                   const HeaveNoise& noise, std::size_t count) const {
     std::vector<double> base;
     evaluate(uses, nullptr, noise, base);
-    // slow waves are bent by the filter and the motion, each run its own way: they are asked one by one
-    std::vector<double> frequencies;
-    for (double frequency = lowest_frequency(); frequency < 6 * lowest_frequency() && frequency < highest_frequency;
-         frequency *= 1.06) {
-        frequencies.push_back(frequency);
-    }
-    for (const double frequency : peaks_of(base, 12)) {
-        frequencies.push_back(frequency);
-    }
-    std::vector<Line> lines;
-    for (const double frequency : frequencies) {
-        lines.push_back(line_at(frequency, uses, noise, base));
-    }
-    std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.gain > b.gain; });
-    std::vector<std::vector<double>> starts;
-    std::vector<double> taken;
-    for (const Line& line : lines) {
-        const bool near = std::any_of(taken.begin(), taken.end(), [&](double f) {
-            return std::abs(line.frequency - f) < 0.4 * lowest_frequency();
-        });
-        if (!near && starts.size() < count) {
-            starts.push_back({std::clamp(line.amplitude, 1e-4, 1.0), line.frequency, line.phase});
-            taken.push_back(line.frequency);
-        }
-    }
-    return starts;
+    return wave_starts(
+        sampled(), base, [&](double frequency) { return line_at(frequency, uses, noise, base); }, count);
 }
 
 }  // namespace underbody::discovery

@@ -12,6 +12,7 @@
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/heave/heave_record.h"
 #include "surrogates/discovery/hypothesis.h"
+#include "surrogates/discovery/wave_scan.h"
 
 namespace underbody::discovery {
 
@@ -92,8 +93,8 @@ public:
     [[nodiscard]] std::vector<std::vector<double>> periodic_starts(const std::vector<dynamics::EffectUse>& uses,
                                                                    const HeaveNoise& noise, std::size_t count) const;
 
-    /// Hz: a period that no run shows twice cannot be told from any other slow change.
-    [[nodiscard]] double lowest_frequency() const;
+    /// The chosen records as a scan for waves sees them.
+    [[nodiscard]] std::vector<SampledRun> sampled() const;
 
     /// Number of readings behind the likelihood.
     [[nodiscard]] std::size_t readings() const;
@@ -122,13 +123,8 @@ private:
     [[nodiscard]] std::vector<double> held_out_cost(const Left& fit, HeaveNoise noise, double most_process) const;
     /// The same at this noise; `inside` is the cost of all runs with `numbers`.
     [[nodiscard]] std::vector<double> held_out_at(const Left& fit, const HeaveNoise& noise, double& inside) const;
-    /// A periodic force that is small: what it would explain, and with which numbers.
-    struct Line {
-        double frequency = 0, gain = 0, amplitude = 0, phase = 0;
-    };
-    [[nodiscard]] Line line_at(double frequency, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise,
-                               const std::vector<double>& base) const;
-    [[nodiscard]] std::vector<double> peaks_of(const std::vector<double>& innovations, std::size_t count) const;
+    [[nodiscard]] WaveLine line_at(double frequency, const std::vector<dynamics::EffectUse>& uses,
+                                   const HeaveNoise& noise, const std::vector<double>& base) const;
     void widen_for_form(Result& result, void (*other_form)(dynamics::HeaveTerms&), const DesignMatrix& columns,
                         const std::vector<double>& innovations) const;
     /// What a corrected declared number makes of the lift of the tables in this record.

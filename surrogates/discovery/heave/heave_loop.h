@@ -10,6 +10,7 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/heave/heave_experiment.h"
+#include "surrogates/discovery/input_reading.h"
 
 namespace underbody::discovery {
 
@@ -29,20 +30,12 @@ private:
     void set_null(HeaveNoise noise);
     [[nodiscard]] HeaveExperiment::Result fitted(const Hypothesis& hypothesis, const HeaveNoise& begin) const;
     void list_candidates();
-    void keep_shapes_inside();
     void fit_singles();
     void try_hold();
     void colour_noise();
     void drop_accidents();
     void absorb_small_shift();
-    /// How the recorded input is read: so much earlier, s, and times a factor.
-    struct InputReading {
-        double early = 0, factor = 1;
-    };
-    [[nodiscard]] std::vector<std::size_t> beside_the_input() const;
-    /// Cost of the likeliest explanation, alone or with one of `beside`, where the input is read so.
-    [[nodiscard]] double cost_with_input(double seconds, double times, const std::vector<std::size_t>& beside);
-    [[nodiscard]] InputReading better_input();
+    [[nodiscard]] double cost_with_input(const InputReading& reading, const std::vector<std::size_t>& beside);
     void fit_again();
     void check_input();
     void change_input(double seconds, double factor);
@@ -66,8 +59,9 @@ private:
                                             const DesignMatrix& own, bool named) const;
     /// Chance that noise alone would surprise as much as `observed` in any of the probes: innovations reordered in
     /// blocks of a second with random signs, so that colour that is left survives.
-    [[nodiscard]] double chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
-                                         double observed, std::uint64_t stream) const;
+    [[nodiscard]] double chance_in_noise(const std::vector<const DesignMatrix*>& columns,
+                                         const std::vector<double>& noise_like, double observed,
+                                         std::uint64_t stream) const;
     void open_gate();
     /// What smooth forces and further effects would still explain beside a fitted hypothesis.
     struct Rest {
@@ -77,12 +71,6 @@ private:
     };
     [[nodiscard]] Rest rest_beside(const FittedHypothesis& base, const HeaveNoise& noise) const;
     // heave_by_run.cpp
-    /// One number of the record or of the rig, run by run, and what it shows beside its mean.
-    struct RunByRun {
-        std::vector<double> value, sigma;
-        Probe probe;
-    };
-    [[nodiscard]] RunByRun run_by_run(const Hypothesis& candidate, const std::vector<double>& innovations) const;
     void look_run_by_run();
     void smooth_corrections();
     [[nodiscard]] HeaveExperiment::Smooth refined(const HeaveExperiment::Smooth& begin) const;

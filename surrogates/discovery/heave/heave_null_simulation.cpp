@@ -6,6 +6,7 @@
 #include "surrogates/discovery/heave/heave_controller.h"
 #include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/noise_chance.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
@@ -171,7 +172,8 @@ void HeaveLoop::run_placebo() {
             observed = std::max(observed, probe.surprise);
         }
         ++result_.placebo.twins;
-        result_.placebo.alarms += chance_in_noise(list, innovations, observed, 100 + t) < calibration_.gate ? 1 : 0;
+        result_.placebo.alarms +=
+            chance_in_noise(columns_of(list), innovations, observed, 100 + t) < calibration_.gate ? 1 : 0;
     }
 }
 

@@ -50,25 +50,6 @@ std::vector<HeaveExperiment::SmoothSet> other_sets(const HeaveExperiment::Smooth
     return list;
 }
 
-/// Where a candidate is looked at when it is small: one set of numbers for each column.
-std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
-    const std::vector<double> start = h.start();
-    std::vector<std::vector<double>> steps;
-    if (is_scanned(h)) {
-        const double frequency = h.starts.empty() ? start[1] : h.starts.front()[1];
-        return {{1e-4, frequency, 0.0}, {1e-4, frequency, 1.5707963}};
-    }
-    for (std::size_t j = 0; j < start.size(); ++j) {
-        std::vector<double> p = start;
-        if (j > 0) {
-            p.front() += 0.05 * h.parameters.front().typical;  // a shape shows only beside a strength
-        }
-        p[j] += 0.05 * h.parameters[j].typical;
-        steps.push_back(std::move(p));
-    }
-    return steps;
-}
-
 /// Of an input that never changes (free runs with a column of noughts) no law can be seen.
 bool input_changes(const HeaveRecords& records) {
     double low = INFINITY, high = -INFINITY;
@@ -149,12 +130,8 @@ std::vector<HeaveLoop::Probe> HeaveLoop::probes(const HeaveExperiment& experimen
     return list;
 }
 
-double HeaveLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
-                                  double observed, std::uint64_t stream) const {
-    std::vector<const DesignMatrix*> columns;
-    for (const Probe& probe : list) {
-        columns.push_back(&probe.columns);
-    }
+double HeaveLoop::chance_in_noise(const std::vector<const DesignMatrix*>& columns,
+                                  const std::vector<double>& noise_like, double observed, std::uint64_t stream) const {
     const std::size_t second = static_cast<std::size_t>(1.0 / record_step) * (records_.velocity_measured ? 2 : 1);
     return chance_among(columns, noise_like, observed, second, options_.seed + stream, progress_);
 }
@@ -170,7 +147,7 @@ void HeaveLoop::open_gate() {
         }
         observed = std::max(observed, own);
     }
-    gate_ = named_gate_ = chance_in_noise(list, fitted_[best_single_].fit.residuals, observed, 0);
+    gate_ = named_gate_ = chance_in_noise(columns_of(list), fitted_[best_single_].fit.residuals, observed, 0);
     if (gate_ < calibration_.gate) {
         return;
     }
@@ -185,7 +162,7 @@ void HeaveLoop::open_gate() {
     for (std::size_t k = 0; k < std::min<std::size_t>(2, smooth.size()) && smooth[k]->surprise > 2; ++k) {
         HeaveExperiment::Smooth fit = experiment_->fit_smooth(*smooth[k]->smooth, {}, null_noise_, null_cost_);
         const double gain = surprise(fit.fit.gain, fit.fit.degrees);
-        gate_ = std::min(gate_, chance_in_noise(list, fit.residuals, gain, 0));
+        gate_ = std::min(gate_, chance_in_noise(columns_of(list), fit.residuals, gain, 0));
         whole_list_.push_back(std::move(fit));
     }
 }
@@ -217,7 +194,7 @@ HeaveLoop::Rest HeaveLoop::rest_beside(const FittedHypothesis& base, const Heave
     if (!fits.empty()) {
         const HeaveExperiment::Smooth& best = best_smooth(fits);
         rest.fit = best.fit;
-        rest.fit.p = chance_in_noise(list, best.residuals, surprise(best.fit.gain, best.fit.degrees), 1);
+        rest.fit.p = chance_in_noise(columns_of(list), best.residuals, surprise(best.fit.gain, best.fit.degrees), 1);
         rest.share = structure_left(rest.fit, base.explained);
     }
     return rest;

@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "surrogates/discovery/consequence.h"
+#include "surrogates/discovery/motion/motion_experiment_design.h"
 #include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
@@ -13,14 +14,17 @@
 
 namespace underbody::discovery {
 
-/// Every measured channel over one and five horizons; the channel whose error falls most, in its noise, first.
+/// Every measured channel over one and five horizons; the channel whose error falls most, in its noise, first. Before:
+/// the model as declared with its logs taken at their word, but for what inputs did between their samples.
 void MotionLoop::measure_error() {
     const std::size_t runs = test_data_.runs.size();
     double most = -1e300;
     std::size_t chief = 0;
+    dynamics::RecordReading as_declared = model_.records;
+    as_declared.input_between = experiment_->reading().input_between;
     for (const double horizon : {options_.horizon, 5 * options_.horizon}) {
-        const Answer before = answer_of({}, horizon), after = answer_of(uses_, horizon);
-        if (before.all.record.empty() || after.all.record.empty()) {
+        const Answer before = answer_of({}, horizon, as_declared, test_data_), after = answer_of(uses_, horizon);
+        if (before.windows.front().record.empty() || after.windows.front().record.empty()) {
             continue;
         }
         for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -137,18 +141,13 @@ void MotionLoop::describe() {
             dynamics::motion_noise(shape(), data_, data_.runs[experiment_->records().front().run])[i]};
     }
     result_.stability = stability();
+    const MotionRig made_with{motion_, model_with({}), data_, experiment_->records(), inputs_, channels_, null_noise_};
     tell({fitted_, attribution_, whole_, rest_.fit, rest_.share, uses_, "a smooth force", evidence_of_runs,
-          [](const FittedHypothesis&, const FittedHypothesis& rival) {
-              return "runs in which " + list_of(rival.hypothesis.depends_on) + " is excited apart from the rest";
+          [&](const FittedHypothesis& chosen, const FittedHypothesis& rival) {
+              return motion_told_apart(made_with, chosen, rival);
           }},
          result_);
-    const bool tied =
-        result_.verdict == "effect" && !result_.alternatives.empty() && result_.alternatives.front().probability > 0.2;
-    result_.next_experiment =
-        tied ? "To tell " + result_.effects.front().name + " from " + result_.alternatives.front().name + ": " +
-                   result_.alternatives.front().told_apart_by + "."
-             : "No further experiment is designed for " + shape().words +
-                   "; runs in other states and with other inputs would show effects below the limits given here.";
+    next_motion_experiment(made_with, fitted_, attribution_, result_);
     for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_, data_)}) {
         result_.problems.insert(result_.problems.end(), more.begin(), more.end());
     }
@@ -156,8 +155,7 @@ void MotionLoop::describe() {
                                    [](const auto& load) { return load.quantity == "lift_force"; });
     result_.problems.push_back(
         {core::Problem::Severity::note,
-         shape().words +
-             ": waves, forces with memory and numbers that differ from run to run are not looked for, and " +
+         shape().words + ": forces with memory are not looked for, and " +
              (lifts ? "of laws without a name one of the lift alone is put into the model, as a smooth correction"
                     : "no smooth correction is put into the model"),
          core::Place{data_.folder.string(), {}, {}, {}}});

@@ -14,7 +14,7 @@ namespace underbody::discovery {
 
 namespace {
 
-/// True for what a filter of these runs cannot follow: a force with memory, a wave whose frequency has to be scanned.
+/// True for what a filter of these runs cannot follow: a force with memory.
 bool out_of_reach(const Hypothesis& hypothesis, const dynamics::Model& model) {
     dynamics::HeaveTerms terms;
     for (dynamics::EffectUse use : hypothesis.uses) {
@@ -23,7 +23,7 @@ bool out_of_reach(const Hypothesis& hypothesis, const dynamics::Model& model) {
         }
         dynamics::effect(use.name).add_to(terms, use, model);
     }
-    return terms.history != 0 || is_scanned(hypothesis);
+    return terms.history != 0;
 }
 
 }  // namespace
@@ -40,6 +40,7 @@ MotionLoop::MotionLoop(const dynamics::Motion& motion, const dynamics::Model& mo
 Discovery MotionLoop::run() {
     result_.motion = shape().name;
     split();
+    problems_before_fit_ = static_cast<std::ptrdiff_t>(result_.problems.size());
     progress_.report(0.02, "noise");
     fit_null();
     try_between();
@@ -50,9 +51,12 @@ Discovery MotionLoop::run() {
     progress_.report(0.6, "testing what is left");
     open_gate();
     if (gate_ < calibration_.gate) {
+        check_input();
         rest_ = rest_beside(fitted_[best_single_], noises_[best_single_]);
         progress_.report(0.7, "several effects");
         fit_further();
+    } else {
+        look_run_by_run();
     }
     progress_.report(0.85, "error on held-out runs");
     decide();
@@ -94,9 +98,13 @@ void MotionLoop::split() {
     }
     experiment_.emplace(motion_, model_, data_, std::move(train));
     channels_ = experiment_->channels();
-    input_recorded_ =
-        std::any_of(experiment_->records().begin(), experiment_->records().end(),
-                    [&](const MotionRecord& record) { return motion_.driven(model_, data_.runs[record.run]); });
+    for (const std::string& column : motion_.inputs(model_)) {
+        if (std::any_of(experiment_->records().begin(), experiment_->records().end(), [&](const MotionRecord& record) {
+                return dynamics::column_moves(data_.runs[record.run], column);
+            })) {
+            inputs_.push_back(column);
+        }
+    }
 }
 
 /// Of the sensors as declared or as the readings scatter; of the loads a little.
@@ -132,16 +140,19 @@ void MotionLoop::set_null(const MotionNoise& noise) {
 /// say.
 void MotionLoop::try_between() {
     using Between = dynamics::RecordReading::Between;
-    if (model_.records.input_between != Between::unsaid || !input_recorded_) {
+    if (model_.records.input_between != Between::unsaid || inputs_.empty()) {
         return;
     }
     const MotionNoise noise = null_noise_;
     const double held = null_cost_;
-    experiment_->read_input(Between::linear);
+    dynamics::RecordReading reading = experiment_->reading();
+    reading.input_between = Between::linear;
+    experiment_->read(reading);
     MotionNoise other = null_noise_;
     const double linear = experiment_->fit_process({}, other);
     const Between found = dynamics::between_samples(Between::unsaid, held, linear);
-    experiment_->read_input(found);
+    reading.input_between = found;
+    experiment_->read(reading);
     set_null(found == Between::linear ? other : noise);
     if (found == Between::linear) {
         warn(
@@ -175,7 +186,22 @@ void MotionLoop::list_candidates() {
     std::erase_if(candidates_, [&](const Hypothesis& one) {
         return out_of_reach(one, model_) || (!pushed && touch_of(one, model_).input) || needs_unread(one);
     });
+    keep_shapes_inside(candidates_, lowest_gap(), lowest_frequency(experiment_->sampled()));
+    begin_scanned(candidates_, [&] { return experiment_->periodic_starts(null_noise_, 3); });
     keep_only(candidates_, options_.candidates);
+}
+
+/// m, of all readings; 0 where the gap is not a state.
+double MotionLoop::lowest_gap() const {
+    double lowest = 1e300;
+    for (const std::size_t i : channels_) {
+        for (const MotionRecord& record : experiment_->records()) {
+            for (const double value : record.readings.value[i]) {
+                lowest = shape().states[i].channel == "gap" && std::isfinite(value) ? std::min(lowest, value) : lowest;
+            }
+        }
+    }
+    return lowest < 1e300 ? lowest : 0;
 }
 
 /// A law over a place that no run has readings of, or over a recorded moment that none has.

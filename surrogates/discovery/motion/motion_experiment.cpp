@@ -25,7 +25,31 @@ dynamics::Model with_all(const dynamics::Model& model, const std::vector<dynamic
 
 MotionExperiment::MotionExperiment(const dynamics::Motion& motion, const dynamics::Model& model,
                                    const dynamics::Measurements& data, std::vector<MotionRecord> records)
-    : motion_(motion), model_(model), data_(data), records_(std::move(records)), reading_(model.records) {}
+    : motion_(motion),
+      model_(model),
+      data_(data),
+      records_(std::move(records)),
+      reading_(model.records),
+      unused_(std::max(0.0, reading_.last_unknown())) {
+    for (const MotionRecord& record : records_) {
+        logged_.push_back(record.readings);
+    }
+}
+
+void MotionExperiment::read(const dynamics::RecordReading& reading, double unused) {
+    reading_ = reading;
+    if (std::max(0.0, unused) == unused_) {
+        return;
+    }
+    unused_ = std::max(0.0, unused);
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+        const std::vector<double>& time = data_.runs[records_[i].run].table.numbers("time");
+        records_[i].readings = logged_[i];
+        for (std::vector<double>& values : records_[i].readings.value) {
+            dynamics::forget_after(time, time.back() - unused_, values);
+        }
+    }
+}
 
 std::size_t MotionExperiment::readings() const {
     std::size_t count = 0;

@@ -10,6 +10,7 @@
 #include "surrogates/discovery/flexible.h"
 #include "surrogates/discovery/hypothesis.h"
 #include "surrogates/discovery/motion/motion_filter.h"
+#include "surrogates/discovery/wave_scan.h"
 
 namespace underbody::discovery {
 
@@ -36,7 +37,10 @@ public:
     [[nodiscard]] std::vector<std::size_t> begins() const;
     /// Channels that were measured, as states.
     [[nodiscard]] std::vector<std::size_t> channels() const;
-    void read_input(dynamics::RecordReading::Between between) { reading_.input_between = between; }
+    /// Logs are read so from now on; of what is beyond the inputs' known end nothing is used.
+    void read(const dynamics::RecordReading& reading) { read(reading, reading.last_unknown()); }
+    /// The same without the last `unused` s of each log: readings of the inputs are compared over the same time.
+    void read(const dynamics::RecordReading& reading, double unused);
     [[nodiscard]] const dynamics::RecordReading& reading() const { return reading_; }
 
     /// -2 log likelihood; innovations of all records one after the other, `by_record` its parts.
@@ -69,6 +73,12 @@ public:
     /// What each column of a smooth load does, to first order about the motion of `traces` (motion_smooth.cpp).
     [[nodiscard]] DesignMatrix answers(const MotionSmooth& smooth, const std::vector<MotionTrace>& traces) const;
 
+    /// The records as a scan for waves sees them.
+    [[nodiscard]] std::vector<SampledRun> sampled() const;
+    /// Frequencies at which a periodic force up would explain most beside the model as declared, with amplitude and
+    /// phase; none where no load is one.
+    [[nodiscard]] std::vector<std::vector<double>> periodic_starts(const MotionNoise& noise, std::size_t count) const;
+
     struct SmoothForce {
         std::optional<dynamics::EffectUse> use;  ///< nothing where no table raises the likelihood
         MotionNoise noise;
@@ -97,7 +107,9 @@ private:
     const dynamics::Model& model_;
     const dynamics::Measurements& data_;
     std::vector<MotionRecord> records_;
+    std::vector<dynamics::MotionReadings> logged_;  ///< of records_
     dynamics::RecordReading reading_;
+    double unused_ = 0;
 };
 
 /// The runs as records, each cut where the body no longer moves freely; `problems` says where.

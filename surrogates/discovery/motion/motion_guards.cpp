@@ -53,38 +53,69 @@ dynamics::Model MotionLoop::model_with(const std::vector<dynamics::EffectUse>& u
 }
 
 MotionLoop::Answer MotionLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const {
-    Answer answer;
-    answer.uses = uses;
+    return answer_of(uses, horizon, experiment_->reading(), test_data_);
+}
+
+MotionLoop::Answer MotionLoop::answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon,
+                                         const dynamics::RecordReading& reading,
+                                         const dynamics::Measurements& data) const {
+    Answer answer{uses, reading, &data, horizon, {}, {}};
     dynamics::PredictOptions options;
     options.horizon = horizon;
-    answer.runs = dynamics::predict_motion_runs(motion_, model_with(uses), test_data_, options, progress_);
+    dynamics::Model model = model_with(uses);
+    model.records = reading;
+    answer.runs = dynamics::predict_motion_runs(motion_, model, data, options, progress_);
     answer.windows.resize(channels_.size());
     for (std::size_t r = 0; r < answer.runs.size(); ++r) {
         dynamics::MeasuredMotion& run = *answer.runs[r].run;
         for (const dynamics::MotionWindow& window : answer.runs[r].windows) {
-            std::vector<double> together;
             for (std::size_t c = 0; c < channels_.size(); ++c) {
                 const std::vector<double>& read = run.readings().value[channels_[c]];
                 std::vector<double> errors;
                 for (std::size_t k = window.start; !read.empty() && k <= window.end; ++k) {
                     if (std::isfinite(read[k])) {
                         errors.push_back(run.reading(k, channels_[c], window.at(k)) - read[k]);
-                        together.push_back(errors.back() / null_noise_.total(channels_[c]));
                     }
                 }
                 add(answer.windows[c], r, errors);
             }
-            add(answer.all, r, together);
         }
     }
     return answer;
 }
 
-bool MotionLoop::falls(const Answer& before, const Answer& after) const {
+WindowSquares MotionLoop::together(const Answer& answer) const {
+    WindowSquares all;
+    std::vector<std::size_t> from(channels_.size(), 0);
+    for (std::size_t w = 0; w < answer.windows.front().record.size(); ++w) {
+        std::vector<double> errors;
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            const WindowSquares& own = answer.windows[c];
+            const std::size_t end = from[c] + static_cast<std::size_t>(own.count[w]);
+            for (; from[c] < end; ++from[c]) {
+                errors.push_back(own.errors[from[c]] / null_noise_.total(channels_[c]));
+            }
+        }
+        add(all, answer.windows.front().record[w], errors);
+    }
+    return all;
+}
+
+PairedFall MotionLoop::fall(const Answer& before, const Answer& after, double tail) const {
     const std::size_t runs = test_data_.runs.size();
-    return paired_fall(before.all.blocks(runs, blocks_wanted), after.all.blocks(runs, blocks_wanted),
-                       calibration_.fall_tail)
-        .falls();
+    return paired_fall(together(before).blocks(runs, blocks_wanted), together(after).blocks(runs, blocks_wanted), tail);
+}
+
+bool MotionLoop::falls(const Answer& before, const Answer& after) const {
+    const PairedFall chief = fall(before, after, calibration_.fall_tail);
+    if (chief.falls() || chief.rises() || !(chief.mean > 0)) {
+        return chief.falls();
+    }
+    // slow effects show over longer predictions: there as well, at the price that it has in heave
+    const auto longer = [](const Answer& answer, const MotionLoop& loop) {
+        return loop.answer_of(answer.uses, 5 * answer.horizon, answer.reading, *answer.data);
+    };
+    return fall(longer(before, *this), longer(after, *this), calibration_.fall_tail / 4).falls();
 }
 
 double MotionLoop::Twins::error(std::size_t channel) const {
@@ -252,6 +283,13 @@ void MotionLoop::decide() {
     }
 }
 
+/// As in heave: the fit of each window finds where it begins, and runs may contradict each other all the same.
+void MotionLoop::call_runs_unlike() {
+    result_.verdict = "unknown";
+    whole_.variables = {"time"};
+    rule_out_none(attribution_, 1 - result_.by_run->chance);
+}
+
 /// Guards the verdict of the likelihoods: a name needs a held-out error that falls, and a name and "none" a rest that
 /// is noise.
 void MotionLoop::guard() {
@@ -266,6 +304,7 @@ void MotionLoop::guard() {
                  "interval: it is not named");
             cap_probabilities(attribution_, 0.5);
             result_.verdict = "none";
+            look_run_by_run();  // nothing is left that all runs have in common
         } else {
             quiet = rest_is_noise(named);
             if (!quiet && (correct(named) || share_left(declared, named) > calibration_.most_left)) {
@@ -282,7 +321,9 @@ void MotionLoop::guard() {
     if (result_.verdict != "effect") {
         quiet = uses_.empty() ? rest_is_noise(declared) : rest_is_noise(answer_of(uses_, options_.horizon));
     }
-    if (result_.verdict == "none" && !quiet) {
+    if (result_.verdict == "none" && result_.by_run) {
+        call_runs_unlike();
+    } else if (result_.verdict == "none" && !quiet) {
         result_.verdict = "unknown";
         if (correct(declared)) {
             quiet = rest_is_noise(answer_of(uses_, options_.horizon));
@@ -291,6 +332,12 @@ void MotionLoop::guard() {
             whole_.variables = {"time"};  // as a random force would: no variable explains it
         }
         rule_out_none(attribution_, 0.5);
+    }
+    if (result_.verdict == "unknown" && uses_.empty() && !result_.by_run) {
+        look_run_by_run();  // what no law of all runs explains may be a number that each has of its own
+    }
+    if (result_.verdict != "unknown" || !uses_.empty()) {
+        result_.by_run.reset();
     }
     result_.rest.is_noise = quiet;
     if (!quiet) {

@@ -11,6 +11,7 @@
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/heave/heave_error.h"
+#include "surrogates/discovery/input_reading.h"
 #include "surrogates/discovery/motion/motion_experiment.h"
 #include "surrogates/dynamics/simulate/motion_predict.h"
 
@@ -30,6 +31,7 @@ private:
     void set_null(const MotionNoise& noise);
     void try_between();
     void list_candidates();
+    [[nodiscard]] double lowest_gap() const;
     [[nodiscard]] bool needs_unread(const Hypothesis& hypothesis) const;
     [[nodiscard]] MotionExperiment::Result fitted(const Hypothesis& hypothesis,
                                                   const std::vector<std::vector<double>>& starts,
@@ -37,6 +39,15 @@ private:
     void fit_singles();
     [[nodiscard]] bool noise_given_to_loads() const;
     void noise_beside_best();
+    // motion_input.cpp: late, turned or scaled inputs are no effect
+    [[nodiscard]] dynamics::RecordReading with_inputs(dynamics::RecordReading reading,
+                                                      const InputReading& inputs) const;
+    [[nodiscard]] double latest_looked_for() const;
+    [[nodiscard]] double cost_alone(std::size_t single) const;
+    [[nodiscard]] double cost_with_input(const std::vector<std::size_t>& beside, const std::vector<double>& before);
+    [[nodiscard]] InputReading likeliest_inputs();
+    void fit_again();
+    void check_input();
     [[nodiscard]] MotionNoise noise_at_first() const;
     void warn(const std::string& text);
 
@@ -52,9 +63,12 @@ private:
     };
     [[nodiscard]] std::vector<Probe> probes(const std::vector<dynamics::EffectUse>& uses, const MotionNoise& noise,
                                             const DesignMatrix& own) const;
-    [[nodiscard]] double chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
-                                         double observed, std::uint64_t stream) const;
+    [[nodiscard]] double chance_in_noise(const std::vector<const DesignMatrix*>& columns,
+                                         const std::vector<double>& noise_like, double observed,
+                                         std::uint64_t stream) const;
     void open_gate();
+    /// Asked where nothing was found that all runs have in common.
+    void look_run_by_run();
     struct Rest {
         SmoothFit fit;                    ///< the best smooth load on top; p from simulation
         double share = 0;                 ///< of all structure, that is left
@@ -67,15 +81,23 @@ private:
     /// What a model predicts of the held-out runs.
     struct Answer {
         std::vector<dynamics::EffectUse> uses;
+        dynamics::RecordReading reading;
+        const dynamics::Measurements* data = nullptr;
+        double horizon = 0;
         std::vector<dynamics::MotionRunPrediction> runs;
         std::vector<WindowSquares> windows;  ///< by channel of channels_, SI
-        WindowSquares all;                   ///< of all channels together, in units of their noise
         [[nodiscard]] double error(std::size_t channel, std::size_t count) const {
             return windows[channel].by_record(count).rmse();
         }
     };
     [[nodiscard]] dynamics::Model model_with(const std::vector<dynamics::EffectUse>& uses) const;
     [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon) const;
+    /// The same of other held-out data, whose logs are read so.
+    [[nodiscard]] Answer answer_of(const std::vector<dynamics::EffectUse>& uses, double horizon,
+                                   const dynamics::RecordReading& reading, const dynamics::Measurements& data) const;
+    /// Of all channels together, in units of their noise.
+    [[nodiscard]] WindowSquares together(const Answer& answer) const;
+    [[nodiscard]] PairedFall fall(const Answer& before, const Answer& after, double tail) const;
     [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
     /// Twins of the held-out windows: the model with these effects and the noise of the sensors alone. By channel of
     /// channels_, in SI.
@@ -98,6 +120,7 @@ private:
     [[nodiscard]] std::optional<dynamics::EffectUse> smooth_force() const;
     /// Puts it (fitted once) into the model where the held-out error falls by it.
     bool correct(const Answer& before);
+    void call_runs_unlike();
     void decide();
     void guard();
 
@@ -123,7 +146,8 @@ private:
     MotionNoise null_noise_;
     double null_cost_ = 0;
     std::vector<double> null_innovations_, null_by_record_;
-    bool input_recorded_ = false;
+    std::vector<std::string> inputs_;  ///< columns of recorded inputs that move
+    std::ptrdiff_t problems_before_fit_ = 0;
     std::vector<Hypothesis> candidates_;
     std::vector<Probe> probes_;  ///< beside the model as declared
     std::vector<FittedHypothesis> fitted_;

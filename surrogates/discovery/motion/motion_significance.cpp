@@ -4,36 +4,13 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "surrogates/discovery/by_run.h"
 #include "surrogates/discovery/motion/motion_loop.h"
 #include "surrogates/discovery/noise_chance.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::discovery {
-
-namespace {
-
-/// Where a candidate is looked at when it is small: one set of numbers for each column.
-std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
-    const std::vector<double> start = h.start();
-    std::vector<std::vector<double>> steps;
-    const auto step = [&](std::size_t j, double from) {
-        const FitParameter& p = h.parameters[j];
-        const double size = 0.05 * p.typical;
-        return from + size > p.upper ? from - size : from + size;
-    };
-    for (std::size_t j = 0; j < start.size(); ++j) {
-        std::vector<double> p = start;
-        if (j > 0) {
-            p.front() = step(0, p.front());  // a shape shows only beside a strength
-        }
-        p[j] = step(j, p[j]);
-        steps.push_back(std::move(p));
-    }
-    return steps;
-}
-
-}  // namespace
 
 /// Each load over every variable, over time, and over two variables together.
 std::vector<MotionSmooth> MotionLoop::smooth_loads() const {
@@ -100,12 +77,8 @@ std::vector<MotionLoop::Probe> MotionLoop::probes(const std::vector<dynamics::Ef
     return list;
 }
 
-double MotionLoop::chance_in_noise(const std::vector<Probe>& list, const std::vector<double>& noise_like,
-                                   double observed, std::uint64_t stream) const {
-    std::vector<const DesignMatrix*> columns;
-    for (const Probe& probe : list) {
-        columns.push_back(&probe.columns);
-    }
+double MotionLoop::chance_in_noise(const std::vector<const DesignMatrix*>& columns,
+                                   const std::vector<double>& noise_like, double observed, std::uint64_t stream) const {
     double seconds = 0;
     for (const MotionRecord& record : experiment_->records()) {
         const std::vector<double>& time = data_.runs[record.run].table.numbers("time");
@@ -118,10 +91,12 @@ double MotionLoop::chance_in_noise(const std::vector<Probe>& list, const std::ve
 void MotionLoop::open_gate() {
     double observed = 0;
     for (const FittedHypothesis& one : fitted_) {
-        observed = std::max(observed, surprise(one.explained, static_cast<double>(one.hypothesis.parameters.size())));
+        double own = surprise(one.explained, static_cast<double>(one.hypothesis.parameters.size()));
+        own -= is_scanned(one.hypothesis) ? std::log10(frequencies_tried) : 0;
+        observed = std::max(observed, own);
     }
     if (!fitted_.empty()) {
-        gate_ = chance_in_noise(probes_, fitted_[best_single_].fit.residuals, observed, 0);
+        gate_ = chance_in_noise(columns_of(probes_), fitted_[best_single_].fit.residuals, observed, 0);
     }
     const Probe* most = nullptr;
     for (const Probe& probe : probes_) {
@@ -141,9 +116,26 @@ void MotionLoop::open_gate() {
     if (gate_ >= calibration_.gate && most->surprise > 2) {  // a law that no named effect resembles
         std::vector<double> left = null_innovations_;
         take_out(most->columns, left);
-        gate_ = std::min(gate_, chance_in_noise(probes_, left, most->surprise, 0));
+        gate_ = std::min(gate_, chance_in_noise(columns_of(probes_), left, most->surprise, 0));
     }
     whole_.p = gate_;
+}
+
+void MotionLoop::look_run_by_run() {
+    RunsInnovations runs{null_innovations_, experiment_->begins(), {}};
+    for (const MotionRecord& record : experiment_->records()) {
+        runs.runs.push_back(record.name);
+    }
+    ByRunQuestions ask;
+    ask.innovations = [&](const std::vector<dynamics::EffectUse>& uses) {
+        std::vector<double> there;
+        experiment_->evaluate(uses, null_noise_, there);
+        return there;
+    };
+    ask.chance = [&](const std::vector<const DesignMatrix*>& columns, const std::vector<double>& left,
+                     double surprise) { return chance_in_noise(columns, left, surprise, 2); };
+    ask.law = gate_ < calibration_.gate ? surprise(whole_.gain, whole_.degrees) : 0;
+    result_.by_run = number_by_run(candidates_, runs, ask, calibration_);
 }
 
 MotionLoop::Rest MotionLoop::rest_beside(const FittedHypothesis& base, const MotionNoise& noise) const {
@@ -182,7 +174,7 @@ MotionLoop::Rest MotionLoop::rest_beside(const FittedHypothesis& base, const Mot
         rest.fit.degrees = static_cast<double>(most->columns.columns);
         std::vector<double> left = base.fit.residuals;
         take_out(most->columns, left);
-        rest.fit.p = chance_in_noise(list, left, most->surprise, 1);
+        rest.fit.p = chance_in_noise(columns_of(list), left, most->surprise, 1);
         rest.share = structure_left(rest.fit, base.explained);
     }
     return rest;

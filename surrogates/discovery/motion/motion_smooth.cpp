@@ -1,6 +1,7 @@
 // Smooth loads without a law: what they would do to the innovations, and the one that fits the runs as a table.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "surrogates/discovery/correction_table.h"
@@ -92,6 +93,49 @@ DesignMatrix MotionExperiment::answers(const MotionSmooth& smooth, const std::ve
     const std::vector<std::vector<double>> values = values_over(shape(), smooth.variables, traces);
     const FlexibleBasis basis(values, smooth.columns);
     return answers(smooth.axis, loads_of(basis, values, samples_of(traces)), traces);
+}
+
+std::vector<SampledRun> MotionExperiment::sampled() const {
+    std::vector<SampledRun> runs;
+    const std::vector<std::size_t> begin = begins();
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+        const MotionRecord& record = records_[r];
+        const std::vector<double>& time = data_.runs[record.run].table.numbers("time");
+        const std::vector<double> own(time.begin() + static_cast<std::ptrdiff_t>(record.first),
+                                      time.begin() + static_cast<std::ptrdiff_t>(record.last + 1));
+        runs.push_back({own, (begin[r + 1] - begin[r]) / own.size(), begin[r]});
+    }
+    return runs;
+}
+
+std::vector<std::vector<double>> MotionExperiment::periodic_starts(const MotionNoise& noise, std::size_t count) const {
+    const std::vector<dynamics::MotionShape::Load>& loads = shape().loads;
+    const auto lift =
+        std::find_if(loads.begin(), loads.end(), [](const auto& load) { return load.quantity == "lift_force"; });
+    if (lift == loads.end()) {
+        return {};
+    }
+    std::vector<double> innovations;
+    std::vector<MotionTrace> traces;
+    evaluate({}, noise, innovations, nullptr, &traces);
+    const std::vector<SampledRun> runs = sampled();
+    return wave_starts(
+        runs, innovations,
+        [&](double frequency) {
+            std::vector<std::vector<double>> waves(2);  // what they take from the innovations
+            for (const SampledRun& run : runs) {
+                for (std::size_t k = 0; k < run.time.size(); ++k) {
+                    const double middle = k + 1 < run.time.size() ? 0.5 * (run.time[k] + run.time[k + 1]) : run.time[k],
+                                 angle = 2 * std::numbers::pi * frequency * middle;
+                    waves[0].push_back(-std::sin(angle));
+                    waves[1].push_back(-std::cos(angle));
+                }
+            }
+            const DesignMatrix both = answers(static_cast<std::size_t>(lift - loads.begin()), waves, traces);
+            const auto half = both.values.begin() + static_cast<std::ptrdiff_t>(both.rows);
+            return wave_line(frequency, {both.values.begin(), half}, {half, both.values.end()}, innovations);
+        },
+        count);
 }
 
 MotionExperiment::SmoothForce MotionExperiment::fit_smooth(const MotionSmooth& smooth, const MotionNoise& begin,

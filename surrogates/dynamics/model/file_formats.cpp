@@ -220,7 +220,11 @@ const core::FileFormat& model_format() {
                "input that acted over the logged one: -1 for a sign turned round"},
               {"input_force_advance", "s", "\"0.1 s\"", "0",
                "the logged input comes so long after it acted; below zero (a part of a sample): before it"},
+              {"other_inputs_advance", "s", "\"0.1 s\"", "0", "so do input_moment and the thrusts of jets"},
               {"heave_velocity_factor", "1", "-1", "1", "heave velocity over the logged one"}}});
+        made.tables.push_back({"records.factors",
+                               "what acted over what was logged, of the inputs beside input_force",
+                               {{"*", "1", "input_moment = -1", "", "a recorded input: input_moment or thrust_NAME"}}});
         made.tables.push_back(
             {"lineage",
              "what a written model was made of",

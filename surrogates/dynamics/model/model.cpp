@@ -110,6 +110,24 @@ Model Model::with_parameter(const std::string& dotted_name, double value) const 
     return result;
 }
 
+double RecordReading::factor_of(const std::string& column) const {
+    if (column == "input_force" || column == "heave_velocity") {
+        return column == "input_force" ? input_factor : velocity_factor;
+    }
+    const auto found = factors.find(column);
+    return found != factors.end() ? found->second : 1;
+}
+
+void RecordReading::scale(const std::string& column, double factor) {
+    if (column == "input_force") {
+        input_factor *= factor;
+    } else if (const double all = factor_of(column) * factor; all != 1) {
+        factors[column] = all;
+    } else {
+        factors.erase(column);
+    }
+}
+
 Model Model::with_effect(EffectUse use) const {
     Model result = *this;
     result.effects.push_back(std::move(use));

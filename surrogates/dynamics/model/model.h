@@ -1,8 +1,10 @@
 // A vehicle over the ground as declared in model.toml: value semantics, strict reading, exact writing back.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -107,12 +109,19 @@ struct Coupling {
 
 /// How logs of this vehicle are read where they say something else than what acted: found by a discovery, or declared.
 struct RecordReading {
-    double input_factor = 1;     ///< input_force that acted over the logged one: -1 for a sign turned round
-    double input_advance = 0;    ///< s: the logged input comes so long after it acted
-    double velocity_factor = 1;  ///< heave_velocity over the logged one
+    double input_factor = 1;                ///< input_force that acted over the logged one: -1 for a sign turned round
+    double input_advance = 0;               ///< s: the logged input comes so long after it acted
+    double others_advance = 0;              ///< s: so do the other recorded inputs, input_moment and thrust_NAME
+    std::map<std::string, double> factors;  ///< of these, by column: what acted over what was logged
+    double velocity_factor = 1;             ///< heave_velocity over the logged one
     enum class Between { unsaid, held, linear };
     Between input_between = Between::unsaid;  ///< what the input did between its samples
     bool operator==(const RecordReading&) const = default;
+    /// Of any column.
+    [[nodiscard]] double factor_of(const std::string& column) const;
+    void scale(const std::string& column, double factor);
+    /// s before a record's end: nothing is known of what acted later.
+    [[nodiscard]] double last_unknown() const { return std::max(input_advance, others_advance); }
 };
 
 struct Lineage {

@@ -283,27 +283,41 @@ EffectUse read_effect(const Model& model, const core::TomlTable& table) {
     return use;
 }
 
-RecordReading read_records(const core::TomlTable& table) {
+RecordReading read_records(const core::TomlTable& table, const std::vector<Jet>& jets) {
     RecordReading records;
-    const auto factor = [&](const char* key, double& value) {
-        if (table.has(key)) {
-            value = table.quantity(key, "1");
+    const auto factor = [](const core::TomlTable& of, const std::string& key, double& value) {
+        if (of.has(key)) {
+            value = of.quantity(key, "1");
             if (!(std::abs(value) > 0) || !std::isfinite(value)) {
-                throw core::InputError("range", std::string("records.") + key + " must not be zero", table.place(key));
+                throw core::InputError("range", of.path_of(key) + " must not be zero", of.place(key));
             }
         }
     };
-    factor("input_force_factor", records.input_factor);
-    factor("heave_velocity_factor", records.velocity_factor);
-    if (table.has("input_force_advance")) {
-        records.input_advance = table.quantity("input_force_advance", "s");
-        // Below zero: a log that stamps an input within the sample before it acts; discovery finds such parts of a
-        // sample.
-        if (!(records.input_advance >= -1) || records.input_advance > 30) {
-            throw core::InputError("range", "records.input_force_advance must lie between -1 and 30 s",
-                                   table.place("input_force_advance"),
-                                   "an input that acts later than it was logged is the effect input_delay");
+    factor(table, "input_force_factor", records.input_factor);
+    factor(table, "heave_velocity_factor", records.velocity_factor);
+    const auto advance = [&](const char* key, double least, double& value) {
+        value = table.quantity_or(key, "s", 0);
+        if (!(value >= least) || value > 30) {
+            throw core::InputError(
+                "range",
+                std::string("records.") + key + " must lie between " + core::format_number(least, 1) + " and 30 s",
+                table.place(key), "an input that acts later than it was logged is the effect input_delay");
         }
+    };
+    // Below zero: a log that stamps an input within the sample before it acts; discovery finds such parts of a sample.
+    advance("input_force_advance", -1, records.input_advance);
+    advance("other_inputs_advance", 0, records.others_advance);
+    std::vector<std::string> columns{"input_moment"};
+    for (const Jet& jet : jets) {
+        columns.push_back("thrust_" + jet.name);
+    }
+    const core::TomlTable factors = table.table_or_empty("factors");
+    for (const std::string& column : factors.keys()) {
+        if (std::find(columns.begin(), columns.end(), column) == columns.end()) {
+            throw core::InputError("name", factors.path_of(column) + " is no recorded input of this vehicle",
+                                   factors.place(column), core::did_you_mean(column, columns));
+        }
+        factor(factors, column, records.factors[column]);
     }
     const std::string between = table.choice("input_force_between", {"held", "linear"}, "");
     records.input_between = between.empty()     ? RecordReading::Between::unsaid
@@ -374,7 +388,7 @@ Model read(const core::TomlTable& root, std::string_view text) {
     for (const core::TomlTable& table : root.tables("effect")) {
         model.effects.push_back(read_effect(model, table));
     }
-    model.records = read_records(root.table_or_empty("records"));
+    model.records = read_records(root.table_or_empty("records"), model.jets);
     const core::TomlTable lineage = root.table_or_empty("lineage");
     if (lineage.has("made_from")) {
         model.lineage.made_from = lineage.strings("made_from");

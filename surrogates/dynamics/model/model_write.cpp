@@ -47,11 +47,16 @@ std::string records_text(const RecordReading& records) {
     };
     factor("input_force_factor", records.input_factor);
     text += records.input_advance != 0 ? "input_force_advance = " + quantity(records.input_advance, "s") + "\n" : "";
+    text += records.others_advance != 0 ? "other_inputs_advance = " + quantity(records.others_advance, "s") + "\n" : "";
     if (records.input_between != RecordReading::Between::unsaid) {
         const bool held = records.input_between == RecordReading::Between::held;
         text += std::string("input_force_between = \"") + (held ? "held" : "linear") + "\"\n";
     }
     factor("heave_velocity_factor", records.velocity_factor);
+    text += records.factors.empty() ? "" : "\n[records.factors]\n";
+    for (const auto& [column, value] : records.factors) {
+        factor(core::toml_string(column).c_str(), value);
+    }
     return text;
 }
 

@@ -42,7 +42,7 @@ MeasuredBody::MeasuredBody(const Model& model, const MeasuredRun& run, const Rec
     : signals_(inputs_of_body(run, records)),
       body_(model, signals_.held, varying_channels(signals_)),
       inputs_(body_.vertical(), signals_),
-      thrusts_(model, run, records.input_between == RecordReading::Between::linear) {
+      thrusts_(model, run, records) {
     if (body_.remembers()) {
         throw core::InputError("motion", "history_force cannot be predicted in the motion of the whole body",
                                {model.name, {}, {}, {}}, "leave the effect out, or say motion = \"heave\" of the runs");
@@ -316,10 +316,10 @@ public:
                                                       const RecordReading& records) const override {
         return std::make_unique<MeasuredBody>(model, run, records);
     }
-    [[nodiscard]] bool driven(const Model& model, const MeasuredRun& run) const override {
-        return column_moves(run, channel_name(Channel::input_force)) ||
-               std::any_of(model.jets.begin(), model.jets.end(),
-                           [&](const Jet& jet) { return column_moves(run, RecordedThrusts::column(jet)); });
+    [[nodiscard]] std::vector<std::string> inputs(const Model& model) const override {
+        std::vector<std::string> columns = RecordedThrusts::columns(model);
+        columns.emplace_back(channel_name(Channel::input_force));
+        return columns;
     }
 };
 

@@ -22,14 +22,21 @@ const Motion* motion_of(const Model& model, const Measurements& data) {
     return moves_in_pitch(model, data) ? &heave_pitch_motion() : nullptr;
 }
 
+void forget_after(const std::vector<double>& time, double known, std::vector<double>& values) {
+    const auto last = std::upper_bound(time.begin(), time.end(), known + 1e-9) - time.begin();
+    std::fill(values.begin() + std::min(last, static_cast<std::ptrdiff_t>(values.size())), values.end(), std::nan(""));
+}
+
 void MeasuredMotion::take_readings(const MeasuredRun& run, const RecordReading& records,
                                    std::initializer_list<std::size_t> needed) {
+    known_until_ = time().back() - std::max(0.0, records.last_unknown());
     for (std::size_t i = 0; i < shape().states.size(); ++i) {
         const std::string& channel = shape().states[i].channel;
         std::vector<double> values =
             run.table.find(channel) != nullptr ? as_read(run, channel, records) : std::vector<double>{};
         if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) {
             readings_.value[i] = std::move(values);
+            forget_after(time(), known_until_, readings_.value[i]);
         } else if (std::find(needed.begin(), needed.end(), i) != needed.end()) {
             throw core::InputError("missing", "run " + run.name + " has no value of " + channel,
                                    {run.table.source, {}, {}, {}}, shape().words + " is not told without it");
@@ -72,6 +79,11 @@ bool column_moves(const MeasuredRun& run, const std::string& column) {
         high = std::isfinite(value) ? std::max(high, value) : high;
     }
     return high > low;
+}
+
+bool Motion::driven(const Model& model, const MeasuredRun& run) const {
+    const std::vector<std::string> columns = inputs(model);
+    return std::any_of(columns.begin(), columns.end(), [&](const auto& column) { return column_moves(run, column); });
 }
 
 std::vector<MotionState> motion_from(MeasuredMotion& run, const MotionState& state, std::size_t from, std::size_t end,
@@ -236,11 +248,12 @@ std::vector<MotionWindow> predict_windows(MeasuredMotion& run, double horizon, d
         return static_cast<std::size_t>(std::lower_bound(t.begin(), t.end(), time - 1e-9) - t.begin());
     };
     std::vector<MotionWindow> windows;
-    for (double begin = t.front() + past; begin < t.back(); begin += horizon) {
+    const double known = run.known_until();
+    for (double begin = t.front() + past; begin < known; begin += horizon) {
         MotionWindow window;
         window.from = at(begin - past);
         window.start = at(begin);
-        window.end = std::max<std::size_t>(std::min(at(std::min(begin + horizon, t.back()) + 1e-6), t.size()), 1) - 1;
+        window.end = std::max<std::size_t>(std::min(at(std::min(begin + horizon, known) + 1e-6), t.size()), 1) - 1;
         if (window.end <= window.start || window.start <= window.from + 2) {
             continue;
         }

@@ -104,7 +104,9 @@ public:
         return clean_after({}, name, model);
     }
 
-    /// Readings of the run, rates with the factor of the records.
+    /// s: of what acted later the record knows nothing, and no prediction goes on.
+    [[nodiscard]] double known_until() const { return known_until_; }
+    /// Readings of the run, rates with the factor of the records; none beyond known_until().
     [[nodiscard]] const MotionReadings& readings() const { return readings_; }
     void set_noise(const std::array<double, most_states>& noise) { readings_.noise = noise; }
 
@@ -116,6 +118,9 @@ protected:
     /// said. What is said of it, after `said`.
     std::vector<std::string> clean_after(std::vector<std::string> said, const std::string& name, const Model& model);
     MotionReadings readings_;
+
+private:
+    double known_until_ = 0;
 };
 
 /// A kind of motion that runs may be of.
@@ -126,8 +131,10 @@ public:
     /// Throws core::InputError where the model lacks what the motion needs.
     [[nodiscard]] virtual std::unique_ptr<MeasuredMotion> run(const Model& model, const MeasuredRun& run,
                                                               const RecordReading& records) const = 0;
+    /// Columns of what drives the body.
+    [[nodiscard]] virtual std::vector<std::string> inputs(const Model& model) const = 0;
     /// True where the recorded inputs of a run move.
-    [[nodiscard]] virtual bool driven(const Model& model, const MeasuredRun& run) const = 0;
+    [[nodiscard]] bool driven(const Model& model, const MeasuredRun& run) const;
     /// Equilibria without input, where the motion has some.
     [[nodiscard]] virtual std::vector<HeaveEquilibrium> equilibria(const Model& /*model*/,
                                                                    const Conditions& /*held*/) const {
@@ -146,6 +153,9 @@ const Motion& surface_motion();
 const Motion& body_motion();
 /// The motion that these runs are of as dataset.toml says, or as model and readings tell; nullptr: heave alone.
 const Motion* motion_of(const Model& model, const Measurements& data);
+
+/// Values later than `known` (s) become missing.
+void forget_after(const std::vector<double>& time, double known, std::vector<double>& values);
 
 /// True where a run has such a column and its values differ; those that are missing tell nothing.
 bool column_moves(const MeasuredRun& run, const std::string& column);

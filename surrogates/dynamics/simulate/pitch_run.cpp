@@ -88,11 +88,8 @@ PitchRun::PitchRun(const Model& model, const MeasuredRun& run, const RecordReadi
         throw core::InputError("motion", "history_force cannot be predicted in heave with pitch",
                                {model.name, {}, {}, {}}, "leave the effect out, or say motion = \"heave\" of the runs");
     }
-    if (run.has("input_moment")) {
-        input_moment_ = run.values("input_moment");
-        if (!fill_missing(time(), input_moment_, linear_)) {
-            input_moment_.clear();
-        }
+    if (run.has("input_moment") && !as_acted(run, "input_moment", records, input_moment_)) {
+        input_moment_.clear();
     }
     take_readings(run, records, {0, 2});
 }
@@ -207,8 +204,8 @@ public:
                                                       const RecordReading& records) const override {
         return std::make_unique<PitchRun>(model, run, records);
     }
-    [[nodiscard]] bool driven(const Model& /*model*/, const MeasuredRun& run) const override {
-        return column_moves(run, "input_force") || column_moves(run, "input_moment");
+    [[nodiscard]] std::vector<std::string> inputs(const Model& /*model*/) const override {
+        return {"input_force", "input_moment"};
     }
     [[nodiscard]] std::vector<HeaveEquilibrium> equilibria(const Model& model, const Conditions& held) const override {
         return HeavePitch(model, held).equilibria();

@@ -546,6 +546,12 @@ std::string reading_text(const RecordReading& records) {
     if (records.input_advance != 0) {
         add("input_force " + core::format_number(records.input_advance, 4) + " s earlier than logged");
     }
+    if (records.others_advance != 0) {
+        add("the other inputs " + core::format_number(records.others_advance, 4) + " s earlier than logged");
+    }
+    for (const auto& [column, factor] : records.factors) {
+        add(column + " times " + core::format_number(factor, 6));
+    }
     if (records.velocity_factor != 1) {
         add("heave_velocity times " + core::format_number(records.velocity_factor, 6));
     }

@@ -17,8 +17,16 @@ constexpr const char* of_thrust = "thrust_";
 
 std::string RecordedThrusts::column(const Jet& jet) { return of_thrust + jet.name; }
 
-RecordedThrusts::RecordedThrusts(const Model& model, const MeasuredRun& run, bool linear)
-    : acting_(model.jets.size(), 0.0), linear_(linear) {
+std::vector<std::string> RecordedThrusts::columns(const Model& model) {
+    std::vector<std::string> columns;
+    for (const Jet& jet : model.jets) {
+        columns.push_back(column(jet));
+    }
+    return columns;
+}
+
+RecordedThrusts::RecordedThrusts(const Model& model, const MeasuredRun& run, const RecordReading& records)
+    : acting_(model.jets.size(), 0.0), linear_(records.input_between == RecordReading::Between::linear) {
     const core::Place whole{run.table.source, {}, {}, {}};
     std::vector<std::string> given, of_jets;
     for (const core::Column& column : run.table.columns()) {
@@ -41,11 +49,11 @@ RecordedThrusts::RecordedThrusts(const Model& model, const MeasuredRun& run, boo
                 "the thrust " + column->name + " is in " + (column->is_text() ? "words" : "'" + column->unit + "'"),
                 run.table.place(0, column->name), "a force: " + column->name + " [N]");
         }
-        thrust_.push_back(column->numbers);
+        thrust_.emplace_back();
         const std::vector<double>& time = run.table.numbers("time");
         const auto first = std::find_if(column->numbers.begin(), column->numbers.end(),
                                         [](double value) { return std::isfinite(value); });
-        if (!fill_missing(time, thrust_.back(), linear)) {
+        if (!as_acted(run, column->name, records, thrust_.back())) {
             throw core::InputError("missing", "run " + run.name + ": the column " + column->name + " has no value",
                                    run.table.place(0, column->name), "the thrust as it acted; 0 where the jet is off");
         }

@@ -15,10 +15,11 @@ namespace underbody::dynamics {
 /// threads.
 class RecordedThrusts {
 public:
-    /// `linear`: between samples as a line, else held. Throws core::InputError for a jet without its column in N, or
-    /// with one that has no value.
-    RecordedThrusts(const Model& model, const MeasuredRun& run, bool linear);
+    /// As `records` say, held between samples where they do not. Throws core::InputError for a jet without its column
+    /// in N, or with one that has no value.
+    RecordedThrusts(const Model& model, const MeasuredRun& run, const RecordReading& records);
     [[nodiscard]] static std::string column(const Jet& jet);
+    [[nodiscard]] static std::vector<std::string> columns(const Model& model);
     /// Within the interval after sample k, `part` of its width on; valid until the next call.
     std::span<const double> at(std::size_t k, double part);
     /// On thrusts beyond what a jet is declared for, and of no jet.

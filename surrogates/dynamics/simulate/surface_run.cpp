@@ -22,7 +22,7 @@ MeasuredSurface::MeasuredSurface(const Model& model, const MeasuredRun& run, con
     : signals_(inputs_of_body(run, records)),
       motion_(model, signals_.held, varying_channels(signals_)),
       inputs_(motion_.vertical(), signals_),
-      thrusts_(model, run, records.input_between == RecordReading::Between::linear) {
+      thrusts_(model, run, records) {
     constexpr double of_stability = 1.5;  // the rule of Runge and Kutta bears 2.8 times the time constant of the slip
     if (model.jets.empty()) {
         throw core::InputError("missing", "runs on the ground need the jets that drive them", {model.name, {}, {}, {}},
@@ -109,9 +109,8 @@ public:
                                                       const RecordReading& records) const override {
         return std::make_unique<MeasuredSurface>(model, run, records);
     }
-    [[nodiscard]] bool driven(const Model& model, const MeasuredRun& run) const override {
-        return std::any_of(model.jets.begin(), model.jets.end(),
-                           [&](const Jet& jet) { return column_moves(run, RecordedThrusts::column(jet)); });
+    [[nodiscard]] std::vector<std::string> inputs(const Model& model) const override {
+        return RecordedThrusts::columns(model);
     }
 };
 

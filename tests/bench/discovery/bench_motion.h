@@ -1,6 +1,7 @@
 // The bench of a coupled motion: simulated rigs with a controller fed the noisy reading, and what discover() says.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -10,6 +11,7 @@
 #include "core/file.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/predict.h"
 
 namespace underbody::bench {
 
@@ -18,7 +20,25 @@ struct Kind {
     const char* name;  ///< what a verdict should say; "none": nothing
     double colour;     ///< of the noise
     void (*change)(Rig& rig);
+    /// Of what is no effect with the kind's name.
+    bool (*right)(const discovery::Discovery& found) = nullptr;
 };
+
+/// Largest error of a channel over 2 s, in its noise.
+inline double worst_in_noise(const dynamics::Model& model, const dynamics::Measurements& data) {
+    double worst = 0;
+    for (const dynamics::ChannelError& channel : dynamics::predict(model, data).channels) {
+        worst = std::max(worst, channel.in_noise);
+    }
+    return worst;
+}
+
+/// The model as written and read again.
+inline dynamics::Model written(const dynamics::Model& model) {
+    const core::TemporaryFolder folder("bench-motion");
+    dynamics::write_model(model, folder.path() / "model.toml");
+    return dynamics::read_model(folder.path() / "model.toml");
+}
 
 struct MotionOptions {
     std::size_t seeds = 1;
@@ -62,7 +82,7 @@ int judge(const std::vector<Kind<Rig>>& kinds, const dynamics::Model& model, con
         if ((!asked.only.empty() && asked.only != kind.name) || (asked.colour >= 0 && kind.colour != asked.colour)) {
             continue;
         }
-        std::size_t right = 0, tied = 0, silent = 0, unknown = 0;
+        std::size_t right = 0, tied = 0, silent = 0, unknown = 0, worse = 0;
         for (std::uint64_t seed = asked.first; seed < asked.first + asked.seeds; ++seed) {
             Rig rig;
             rig.seconds = asked.seconds;
@@ -86,20 +106,32 @@ int judge(const std::vector<Kind<Rig>>& kinds, const dynamics::Model& model, con
                 beside = beside || (found.verdict == "effect" && rival.name == kind.name && rival.probability > 0.2);
             }
             const bool none = found.verdict == "none";
-            right += named || beside || (none && std::strcmp(kind.name, "none") == 0) ? 1 : 0;
+            const bool own = kind.right != nullptr ? kind.right(found)
+                                                   : named || beside || (none && std::strcmp(kind.name, "none") == 0);
+            right += own ? 1 : 0;
             tied += beside ? 1 : 0;
             silent += none ? 1 : 0;
             unknown += found.verdict == "unknown" ? 1 : 0;
-            std::printf("  %s, colour %g, seed %llu: %s (%.1f s)\n", kind.name, kind.colour,
-                        static_cast<unsigned long long>(seed), found.sentence.c_str(), spent);
+            if constexpr (requires { rig.gain; }) {
+                rig.gain = 1.3;  // fresh runs have another controller and other starts
+            }
+            const dynamics::Measurements fresh = runs(rig, seed + 1000000);
+            const double before = worst_in_noise(model, fresh), after = worst_in_noise(written(found.model), fresh);
+            worse += after > 1.05 * before ? 1 : 0;
+            std::printf("  %s, colour %g, seed %llu: %s%s (%.1f s; fresh runs %.3g to %.3g noises)\n", kind.name,
+                        kind.colour, static_cast<unsigned long long>(seed),
+                        own ? "" : "NOT RIGHT: ", found.sentence.c_str(), spent, before, after);
             std::fflush(stdout);
         }
         if (!asked.write.empty()) {
             continue;
         }
         const discovery::Interval interval = discovery::wilson_interval(right, asked.seeds);
-        std::printf("%s, colour %g: %zu of %zu right or tied (%.2f to %.2f), %zu tied, %zu silent, %zu unknown\n",
-                    kind.name, kind.colour, right, asked.seeds, interval.low, interval.high, tied, silent, unknown);
+        std::printf(
+            "%s, colour %g: %zu of %zu right or tied (%.2f to %.2f), %zu tied, %zu silent, %zu unknown, fresh runs "
+            "worse "
+            "in %zu\n",
+            kind.name, kind.colour, right, asked.seeds, interval.low, interval.high, tied, silent, unknown, worse);
         std::fflush(stdout);
     }
     return 0;

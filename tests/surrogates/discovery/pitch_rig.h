@@ -75,7 +75,20 @@ struct PitchRig {
     std::function<double(const PitchMoment&)> force = {},
                                               moment = {};  ///< what the model lacks, about the centre of gravity
     double added_inertia = 0;
+    std::size_t late = 0;                         ///< rows by which the inputs are logged after they acted
+    double logged_force = 1, logged_moment = 1;   ///< of the logged inputs over those that acted
+    std::function<double(std::size_t run)> zero;  ///< of the gap's sensor, m
+    std::function<double(double t)> added_force, added_moment;  ///< to what the controller commands
 };
+
+/// What is logged of an input that acted.
+inline std::vector<double> logged(const std::vector<double>& acted, std::size_t late, double factor) {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < acted.size(); ++k) {
+        out.push_back(factor * acted[k >= late ? k - late : 0]);
+    }
+    return out;
+}
 
 inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std::uint64_t seed) {
     const PitchBody body;
@@ -100,15 +113,18 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
                 slow = rig.colour * slow + std::sqrt(1 - rig.colour * rig.colour) * random.normal();
                 return sigma * slow;
             };
-            const double read_gap = y[0] + coloured(gap_slow, rig.gap_noise);
+            const double zero = rig.zero ? rig.zero(static_cast<std::size_t>(r)) : 0;
+            const double read_gap = y[0] + zero + coloured(gap_slow, rig.gap_noise);
             const double read_pitch = y[2] + coloured(pitch_slow, rig.pitch_noise);
             // a slow estimate of the rates out of the noisy readings, as a controller makes it
             const double rate_gap = (read_gap - before) / dt, rate_pitch = (read_pitch - before_pitch) / dt;
             before += 0.15 * (read_gap - before);
             before_pitch += 0.15 * (read_pitch - before_pitch);
             const double u = body.weight + rig.gain * (0.5 * (target - read_gap) - 0.15 * rate_gap * dt / 0.04) +
-                             0.004 * std::sin(1.7 * t + phase);
-            const double m = rig.moment_input ? rig.gain * (0.03 * (lean - read_pitch) - 2e-4 * rate_pitch) : 0;
+                             0.004 * std::sin(1.7 * t + phase) + (rig.added_force ? rig.added_force(t) : 0);
+            const double m = rig.moment_input ? rig.gain * (0.03 * (lean - read_pitch) - 2e-4 * rate_pitch) +
+                                                    (rig.added_moment ? rig.added_moment(t) : 0)
+                                              : 0;
             time.push_back(t);
             gap.push_back(read_gap);
             pitch.push_back(read_pitch);
@@ -151,9 +167,9 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
         run.table.add_numbers("time", "s", time);
         run.table.add_numbers("gap", "m", gap);
         run.table.add_numbers("pitch", "rad", pitch);
-        run.table.add_numbers("input_force", "N", input);
+        run.table.add_numbers("input_force", "N", logged(input, rig.late, rig.logged_force));
         if (rig.moment_input) {
-            run.table.add_numbers("input_moment", "N m", turning);
+            run.table.add_numbers("input_moment", "N m", logged(turning, rig.late, rig.logged_moment));
         }
         if (rig.velocities) {
             run.table.add_numbers("heave_velocity", "m/s", velocity);

@@ -244,7 +244,10 @@ TEST_F(BodyRuns, AThrustActsBetweenItsSamplesAndAsItsFirstBeforeIt) {
             }
         });
         EXPECT_TRUE(dynamics::column_moves(gaps.runs[0], "thrust_bow"));
-        dynamics::RecordedThrusts recorded(model_, gaps.runs[0], linear);
+        dynamics::RecordReading reading;
+        reading.input_between =
+            linear ? dynamics::RecordReading::Between::linear : dynamics::RecordReading::Between::held;
+        dynamics::RecordedThrusts recorded(model_, gaps.runs[0], reading);
         EXPECT_EQ(recorded.remarks().size(), 1U) << "0.16 s without a value";
         EXPECT_EQ(recorded.at(0, 0.0)[2], thrust[4]);
         return recorded.at(5, 0.0)[2];
