@@ -34,20 +34,32 @@ const BodySpec* body_of(const Study& study, const Case& entry) {
     return nullptr;
 }
 
-std::optional<core::Problem> body_fault(const Study& study, const CaseLoads& loads) {
-    const Case& entry = study.cases[loads.entry];
-    const BodySpec* body = loads.values.empty() || !entry.zones.empty() ? nullptr : body_of(study, entry);
-    if (body == nullptr) {
+const geometry::BodyShape* BodiesOfCases::shape_of(const BodySpec& body) {
+    const auto [known, fresh] = shapes_.try_emplace(&body);
+    if (fresh) {
+        try {
+            known->second = geometry::read_shape(body.shape);
+        } catch (const core::Error&) {  // its own step says what is wrong with it
+        }
+    }
+    return known->second ? &*known->second : nullptr;
+}
+
+std::optional<core::Problem> BodiesOfCases::fault(const CaseLoads& loads) {
+    const Case& entry = study_.cases[loads.entry];
+    const BodySpec* body = loads.values.empty() || !entry.zones.empty() ? nullptr : body_of(study_, entry);
+    const geometry::BodyShape* read = body == nullptr ? nullptr : shape_of(*body);
+    if (read == nullptr) {
         return {};
     }
-    geometry::BodyShape shape;
-    try {
-        shape = geometry::read_shape(body->shape);
-    } catch (const core::Error&) {
-        return {};  // its own step says what is wrong with it
+    const geometry::BodyShape& shape = *read;
+    if (geometry::tail_plate(shape) != nullptr || shape.base_offset != 0) {
+        return {};  // they may reach beyond the hull
     }
     const double turned = by_pitch * std::abs(std::sin(entry.conditions.number("pitch").value_or(0)));
-    const double height = shape.base_depth() + shape.height / 2 + (shape.protrusion ? shape.protrusion->height : 0);
+    const geometry::BodyShape::BaseExtent base = shape.base_extent();
+    const double height = shape.base_depth() + shape.height / 2 + (shape.protrusion ? shape.protrusion->height : 0) +
+                          std::max(base.nose, -base.tail) * std::tan(std::abs(shape.base_pitch));
     const std::string length_differs = difference("long", loads.body_length, shape.length, same_size + turned);
     const std::string height_differs = difference("high", loads.body_height, height, same_size + turned);
     if (length_differs.empty() && height_differs.empty()) {
@@ -62,9 +74,10 @@ std::optional<core::Problem> body_fault(const Study& study, const CaseLoads& loa
 }
 
 bool is_of_its_cases(const Study& study, const StudyResults& results, const std::string& body) {
+    BodiesOfCases bodies(study);
     return std::none_of(results.case_loads.begin(), results.case_loads.end(), [&](const CaseLoads& loads) {
         const BodySpec* of = body_of(study, study.cases[loads.entry]);
-        return of != nullptr && of->name == body && body_fault(study, loads);
+        return of != nullptr && of->name == body && bodies.fault(loads);
     });
 }
 

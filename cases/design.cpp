@@ -263,12 +263,13 @@ void Design::note_unknown_sigmas() {
 core::Table Design::results_table(std::size_t first) const {
     core::Table table;
     const std::span<const DesignRun> runs = std::span(runs_).subspan(first);
-    std::vector<std::string> designs, fidelities, states, shapes;
+    std::vector<std::string> designs, fidelities, states, shapes, meshes;
     for (const DesignRun& run : runs) {
         designs.push_back(run.design);
         fidelities.push_back(run.fidelity);
         states.push_back(run.state);
         shapes.push_back(run.origin.shape);
+        meshes.push_back(run.origin.mesh);
     }
     table.add_text("design", designs);
     const auto all = spec_.all_variables();
@@ -289,6 +290,7 @@ core::Table Design::results_table(std::size_t first) const {
     }
     table.add_text("shape_hash", shapes);
     table.add_text("fidelity", fidelities);
+    table.add_text("mesh_settings", meshes);
     for (const std::string& q : spec_.quantities) {
         std::vector<double> values, sigmas;
         for (const DesignRun& run : runs) {

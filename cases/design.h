@@ -7,8 +7,7 @@
 // - shapes/NAME.toml: the shape of each.
 // - runs/FIDELITY/: the cases of OpenFOAM.
 // - results.csv: one row a run, with design, varied numbers, conditions, fidelity, water, hash of the shape that was
-// varied, loads with
-//   NAME_sigma, state.
+//   varied, how the mesh was made, loads with NAME_sigma, state.
 #pragma once
 
 #include <map>
@@ -43,6 +42,7 @@ struct PlannedDesign {
 struct RunOrigin {
     std::map<std::string, double> numbers;  ///< gap, pitch, speed, jet_flow, density, kinematic_viscosity; SI
     std::string shape;                      ///< hash of the shape whose numbers were varied, without them
+    std::string mesh;                       ///< "blocks draft 800 iterations": how the mesh was made and solved on
 };
 
 /// Of the study's, what the cases of a search are made with.

@@ -50,6 +50,25 @@ std::optional<geometry::BodyShape> shape_in(const CaseRecord& record) {
 
 bool same_number(double a, double b) { return std::abs(a - b) <= 1e-6 * std::max(std::abs(a), std::abs(b)) + 1e-12; }
 
+/// "blocks draft 800 iterations", "snappy cell 0.125 surface_level 3 layers 3 800 iterations"
+std::string mesh_of(const CaseRecord& record) {
+    std::string text, iterations;
+    bool blocks = false;
+    for (const auto& [name, value] : record.made_of) {
+        if (name == "mesher" || name == "mesh density") {
+            blocks = true;
+            text += (text.empty() ? "" : " ") + value;
+        } else if (name == "cell" || name == "surface_level" || name == "layers") {
+            text += (text.empty() ? "" : " ") + name + " " + value;
+        } else if (name == "iterations") {
+            iterations = value;
+        }
+    }
+    return text.empty() ? text : (blocks ? "" : "snappy ") + text + " " + iterations + " iterations";
+}
+
+bool same_mesh(const RunOrigin& a, const RunOrigin& b) { return a.mesh.empty() || b.mesh.empty() || a.mesh == b.mesh; }
+
 bool same_shape(const RunOrigin& a, const RunOrigin& b) {
     return a.shape.empty() || b.shape.empty() || a.shape == b.shape;
 }
@@ -66,6 +85,9 @@ std::vector<std::string> differences_of(const RunOrigin& there, const RunOrigin&
     }
     if (!same_shape(there, now)) {
         found.push_back("another shape: " + there.shape + " there, " + now.shape + " now");
+    }
+    if (!same_mesh(there, now)) {
+        found.push_back("mesh: " + there.mesh + " there, " + now.mesh + " now");
     }
     return found;
 }
@@ -114,7 +136,7 @@ SolvedRuns solved_runs(const DesignSpec& spec) {
                 runs[{fidelity.name, name.substr(0, condition)}].push_back(
                     {fidelity.name,
                      *record,
-                     {numbers_of(*record), shape ? hash_of_base(spec, *shape) : std::string()}});
+                     {numbers_of(*record), shape ? hash_of_base(spec, *shape) : std::string(), mesh_of(*record)}});
             }
         }
     }
@@ -162,6 +184,7 @@ private:
     void take_over(const SolvedRun& one, bool other_shape, DesignRun& run) const {
         run.at = filled(run, one);
         run.origin.numbers.insert(one.origin.numbers.begin(), one.origin.numbers.end());
+        run.origin.mesh = run.origin.mesh.empty() ? one.origin.mesh : run.origin.mesh;
         if (run.origin.shape.empty()) {
             const bool tied_otherwise = other_shape && one.origin.shape == hash_of_base(spec_, base_);
             run.origin.shape = tied_otherwise ? one.record.shape.substr(0, 12) : one.origin.shape;
@@ -254,11 +277,12 @@ std::vector<OriginNumber> origin_columns(const DesignSpec& spec) {
 }
 
 RunOrigin origin_of(const DesignSpec& spec, const geometry::BodyShape& base, const CaseRecord& record) {
-    return {numbers_of(record), hash_of_base(spec, base)};
+    return {numbers_of(record), hash_of_base(spec, base), mesh_of(record)};
 }
 
 bool agree(const RunOrigin& a, const RunOrigin& b) {
-    return same_shape(a, b) && std::all_of(a.numbers.begin(), a.numbers.end(), [&](const auto& number) {
+    return same_shape(a, b) && same_mesh(a, b) &&
+           std::all_of(a.numbers.begin(), a.numbers.end(), [&](const auto& number) {
                const auto other = b.numbers.find(number.first);
                return other == b.numbers.end() || same_number(number.second, other->second);
            });
@@ -300,11 +324,13 @@ void read_origins(const core::Table& table, const DesignSpec& spec, std::vector<
             }
         }
     }
-    if (table.find("shape_hash") != nullptr) {
-        for (std::size_t i = 0; i < runs.size(); ++i) {
-            runs[i].origin.shape = table.text("shape_hash")[i];
+    const auto text = [&](const char* name, std::string RunOrigin::*member) {
+        for (std::size_t i = 0; table.find(name) != nullptr && i < runs.size(); ++i) {
+            runs[i].origin.*member = table.text(name)[i];
         }
-    }
+    };
+    text("shape_hash", &RunOrigin::shape);
+    text("mesh_settings", &RunOrigin::mesh);
 }
 
 void settle_origins(const core::Table& table, const DesignSpec& spec, const geometry::BodyShape& base,
@@ -349,6 +375,9 @@ void note_silent_rows(const DesignSpec& spec, const std::string& file, const std
         }
         if (run.origin.shape.empty()) {
             missing.emplace_back("shape_hash");
+        }
+        if (run.origin.mesh.empty()) {
+            missing.emplace_back("mesh_settings");
         }
         silent += missing.empty() ? 0 : 1;
         unsaid = missing.size() > unsaid.size() ? missing : unsaid;

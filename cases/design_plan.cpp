@@ -40,13 +40,26 @@ void read_predictions(const DesignSpec& spec, const core::Table& table, std::vec
     }
     for (const Response& response : spec.responses()) {
         const std::string& name = response.name;
-        const auto *value = table.find(name + said_before), *sigma = table.find(name + its_error);
-        for (std::size_t i = 0; value != nullptr && sigma != nullptr && i < plan.size(); ++i) {
-            if (std::isfinite(value->numbers.at(i)) && std::isfinite(sigma->numbers.at(i))) {
-                plan[i].predicted[name] = {value->numbers[i], sigma->numbers[i]};
+        if (table.find(name + said_before) == nullptr || table.find(name + its_error) == nullptr) {
+            continue;
+        }
+        const auto &value = table.numbers(name + said_before), &sigma = table.numbers(name + its_error);
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            if (std::isfinite(value[i]) && std::isfinite(sigma[i])) {
+                plan[i].predicted[name] = {value[i], sigma[i]};
             }
         }
     }
+}
+
+/// Equal but for the rounding of a file.
+bool is_same_design(const DesignSpec& spec, const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t v = 0; v < a.size(); ++v) {
+        if (std::abs(a[v] - b[v]) > 1e-7 * (spec.variables[v].upper - spec.variables[v].lower)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 std::vector<PlannedDesign> planned_in(const DesignSpec& spec, const core::Table& table) {
@@ -69,7 +82,8 @@ std::vector<PlannedDesign> planned_in(const DesignSpec& spec, const core::Table&
     read_predictions(spec, table, plan);
     for (std::size_t i = 0; i < plan.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-            if (plan[i].name == plan[j].name && (plan[i].fidelity == plan[j].fidelity || plan[i].at != plan[j].at)) {
+            if (plan[i].name == plan[j].name &&
+                (plan[i].fidelity == plan[j].fidelity || !is_same_design(spec, plan[i].at, plan[j].at))) {
                 throw core::InputError("duplicate", "the design " + plan[i].name + " stands twice",
                                        table.place(i, "design"), "a name of its own for each");
             }
@@ -191,7 +205,9 @@ core::Table Design::plan_table() const {
 
 std::string Design::what_is_asked() const {
     core::Hasher hash;
-    hash.add(hash_of_base(spec_, base_)).add(spec_.kinematic_viscosity).add(water_.density.value_or(0));
+    hash.add(hash_of_base(spec_, base_))
+        .add(spec_.kinematic_viscosity)
+        .add(water_.density.value_or(geometry::default_water_density));
     for (const auto* values : {&spec_.gaps, &spec_.pitches, &spec_.speeds, &spec_.jet.values}) {
         hash.add("values of a condition");
         for (const double value : *values) {
@@ -223,19 +239,11 @@ std::vector<std::string> Design::add(const std::vector<tables::Candidate>& candi
                              "planned",
                              {},
                              what_is_asked()};
-        const auto same = [&](const PlannedDesign& d) {
-            for (std::size_t v = 0; v < c.at.size(); ++v) {
-                const SearchVariable& variable = spec_.variables[v];
-                if (std::abs(d.at[v] - c.at[v]) > 1e-7 * (variable.upper - variable.lower)) {
-                    return false;
-                }
-            }
-            return true;
-        };
         bool planned = false;
         for (const PlannedDesign& d : plan_) {
-            if (same(d)) {
+            if (is_same_design(spec_, d.at, c.at)) {
                 chosen.name = d.name;  // one shape, one name, on each of its meshes
+                chosen.at = d.at;
                 planned = planned || d.fidelity == chosen.fidelity;
             }
         }

@@ -94,7 +94,8 @@ private:
 /// Why there is nothing to compare; empty: there are runs.
 std::string missing_words(const Design& design, const PlannedDesign& planned) {
     if (planned.predicted_of != design.what_is_asked()) {
-        return "predicted of another shape, or for other objectives or limits, than [design] has now";
+        return "predicted of another shape or water, or for other conditions, objectives or limits, than [design] has "
+               "now";
     }
     if (planned.state != "planned") {
         return planned.state;
@@ -177,16 +178,18 @@ std::vector<core::Figure> proof_figures(const std::vector<ProofOfDesign>& all) {
             if (!one.computed) {
                 continue;
             }
-            core::Figure& figure = by_unit[one.unit];
+            const std::string unit(core::told_unit(one.unit));
+            const auto shown = [&](double value) { return core::convert(value, one.unit, unit); };
+            core::Figure& figure = by_unit[unit];
             auto series = std::find_if(figure.points.begin(), figure.points.end(),
                                        [&](const auto& points) { return points.name == one.name; });
             if (series == figure.points.end()) {
                 figure.points.push_back({one.name, {}, {}, {}, core::palette(figure.points.size())});
                 series = std::prev(figure.points.end());
             }
-            series->x.push_back(one.computed->value);
-            series->y.push_back(one.predicted.value);
-            series->y_error.push_back(2 * std::hypot(one.predicted.sigma, one.computed->sigma));
+            series->x.push_back(shown(one.computed->value));
+            series->y.push_back(shown(one.predicted.value));
+            series->y_error.push_back(2 * shown(std::hypot(one.predicted.sigma, one.computed->sigma)));
         }
     }
     std::vector<core::Figure> figures;

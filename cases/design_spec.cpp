@@ -185,6 +185,10 @@ tables::Response response_from(const TomlTable& table, const DesignSpec& spec) {
         table.accept("half_width");
     }
     r.name = table.string_or("name", r.name);
+    if (r.name.find_first_of(",\"[]\n\r") != std::string::npos) {
+        throw core::InputError("name", table.path_of("name") + ": '" + r.name + "' cannot head a column of plan.csv",
+                               table.place("name"), "no commas, quotation marks and square brackets");
+    }
     drop_the_only_values(r, spec);
     return r;
 }
@@ -311,6 +315,15 @@ void read_fidelities(const TomlTable& design, DesignSpec& spec) {
     }
 }
 
+bool same_response(const tables::Response& a, const tables::Response& b) {
+    const auto same = [](const core::NamedValue& x, const core::NamedValue& y) {
+        return x.name == y.name && x.value == y.value;
+    };
+    return a.quantity == b.quantity && a.slope_along == b.slope_along && a.half_width == b.half_width &&
+           std::is_permutation(a.conditions.begin(), a.conditions.end(), b.conditions.begin(), b.conditions.end(),
+                               same);
+}
+
 /// What is wanted, and what must hold.
 void read_wishes(const TomlTable& design, DesignSpec& spec) {
     std::set<std::string> objective_names, limit_names;
@@ -321,7 +334,15 @@ void read_wishes(const TomlTable& design, DesignSpec& spec) {
     }
     for (const TomlTable& table : design.tables("limit")) {
         limit_from(table, spec);
-        check_name(limit_names, spec.limits.back().response.name, "limits", table.place());
+        const tables::Response& limited = spec.limits.back().response;
+        check_name(limit_names, limited.name, "limits", table.place());
+        for (const tables::Objective& objective : spec.objectives) {
+            if (objective.response.name == limited.name && !same_response(objective.response, limited)) {
+                throw core::InputError(
+                    "name", "an objective and a limit that are not of the same are both called '" + limited.name + "'",
+                    table.place(), "name = \"...\" of each");
+            }
+        }
     }
     const TomlTable volume = design.table_or_empty("volume");
     spec.least_volume = volume.quantity_or("at_least", "m^3", spec.least_volume);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "surrogates/tables/exports/export.h"
 
 namespace underbody::cases {
@@ -11,6 +12,14 @@ namespace underbody::cases {
 std::string export_name(std::string table) {
     std::replace_if(
         table.begin(), table.end(), [](char c) { return c == ' ' || c == ',' || c == '/'; }, '_');
+    constexpr std::size_t most = 120;  // file systems take 255 bytes, with what other names add to it
+    if (table.size() > most) {
+        std::size_t cut = most - 9;
+        while (cut > 0 && (static_cast<unsigned char>(table[cut]) & 0xC0U) == 0x80U) {
+            --cut;  // no half of a letter
+        }
+        table = table.substr(0, cut) + "_" + core::content_hash(table).substr(0, 8);
+    }
     return table;
 }
 

@@ -8,7 +8,7 @@
 
 namespace underbody::cases {
 
-/// The name of a table as identifier and file.
+/// The name of a table as identifier and file; a long one is cut, with a hash of the whole behind it.
 std::string export_name(std::string table);
 
 /// "lift.h": the file of an export of a [[table]]; "lift_simulink.mat" where another format ends alike. Throws

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "cases/design.h"
 #include "core/counted.h"
@@ -129,10 +130,15 @@ std::vector<double> varied_numbers(const DesignSpec& spec, const geometry::BodyS
                                    const geometry::BodyShape& shape) {
     std::vector<double> at;
     for (const auto& variable : spec.variables) {
-        if (!geometry::has_part_of(shape, variable.name)) {
+        const bool there = geometry::has_part_of(shape, variable.name);
+        // A protrusion of no height is none (shape_at): what else is varied of it changes nothing.
+        const bool of_none = !there && variable.name.starts_with("protrusion.") && base.protrusion;
+        if (!there && !of_none) {
             return {};
         }
-        at.push_back(geometry::parameter(shape, variable.name));
+        at.push_back(there                                  ? geometry::parameter(shape, variable.name)
+                     : variable.name == "protrusion.height" ? 0
+                                                            : geometry::parameter(base, variable.name));
     }
     try {
         // Files of shapes hold nine digits.
@@ -150,10 +156,20 @@ const Surrogate* LearnedLoads::find(const std::string& quantity) const {
 
 std::shared_ptr<const LearnedLoads> learned_loads(const Design& design, const std::vector<std::string>& quantities,
                                                   core::Progress& progress) {
-    LearnedLoads known{design.spec(), geometry::read_shape(design.spec().shape), {}, design.known().solved};
+    LearnedLoads known{design.spec(), geometry::read_shape(design.spec().shape), {}, {}};
     for (const std::string& quantity : quantities.empty() ? design.spec().quantities : quantities) {
         known.surrogates.push_back(design.surrogate(quantity, progress));
     }
+    std::set<std::vector<double>> shapes;
+    for (const DesignRun& run : design.runs()) {
+        const bool learned =
+            run.usable() && std::any_of(known.surrogates.begin(), known.surrogates.end(),
+                                        [&](const Surrogate& s) { return run.loads.contains(s.quantity()); });
+        if (learned) {
+            shapes.emplace(run.at.begin(), run.at.begin() + static_cast<std::ptrdiff_t>(known.spec.variables.size()));
+        }
+    }
+    known.solved.assign(shapes.begin(), shapes.end());
     return std::make_shared<const LearnedLoads>(std::move(known));
 }
 

@@ -23,7 +23,7 @@ struct LearnedLoads {
     DesignSpec spec;
     geometry::BodyShape base;
     std::vector<tables::Surrogate> surrogates;  ///< one a quantity
-    std::vector<std::vector<double>> solved;    ///< SI, numbers of the shapes that were run
+    std::vector<std::vector<double>> solved;    ///< SI, numbers of the shapes that were learned from
 
     [[nodiscard]] const tables::Surrogate* find(const std::string& quantity) const;
 };

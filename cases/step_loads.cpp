@@ -236,8 +236,9 @@ void warn_of_odd_ones(const Study& study, std::vector<CaseLoads>& all) {
         cases.push_back(std::move(one));
         place.push_back(i);
     }
+    BodiesOfCases bodies(study);
     for (CaseLoads& loads : all) {
-        if (auto fault = body_fault(study, loads)) {
+        if (auto fault = bodies.fault(loads)) {
             loads.warnings.push_back(std::move(*fault));
         }
     }

@@ -14,9 +14,13 @@ namespace {
 
 using SharedLoads = Shared<std::shared_ptr<const LearnedLoads>>;
 
-/// What of [design] the surrogates are made with; the files that it names are noted when they are read.
-std::string digest_of_search(const DesignSpec& spec) {
+/// What of [design] the surrogates are made with, and by what rows of results.csv are told from those of something
+/// else; what the files hold is noted when they are read.
+std::string digest_of_search(const Engine& engine) {
+    const DesignSpec& spec = *engine.study.design;
     core::Hasher hash;
+    hash.add(engine.path_in_study(spec.shape)).add(engine.path_in_study(spec.folder)).add(engine.study.symmetry);
+    hash.add(engine.study.reference.number("density").value_or(NAN));
     for (const auto& v : spec.variables) {
         hash.add(v.name).add(v.lower).add(v.upper).add(v.logarithmic ? 1 : 0);
     }
@@ -31,7 +35,9 @@ std::string digest_of_search(const DesignSpec& spec) {
     }
     hash.add(spec.jet.quantity).add(spec.kinematic_viscosity);
     for (const auto& fidelity : spec.fidelities) {
-        hash.add(fidelity.name);
+        const CaseMesh& mesh = fidelity.mesh;
+        hash.add(fidelity.name).add(mesh.mesher).add(mesh.density).add(mesh.cell);
+        hash.add(mesh.surface_level).add(mesh.layers).add(mesh.iterations);
     }
     return hash.digest();
 }
@@ -87,7 +93,7 @@ void run_shape_loads(Engine& engine) {
             .add("quantity", spec.quantity)
             .add("where", spec.where)
             .add("relative_sigma", spec.relative_sigma)
-            .add("design", digest_of_search(*engine.study.design));
+            .add("design", digest_of_search(engine));
         for (const auto& axis : spec.axes) {
             key.add("axis", axis);
         }

@@ -92,8 +92,8 @@ double clearance_of_base(const BodyShape& shape, double gap, double pitch) {
         }
     }
     if (const TailPlate* plate = tail_plate(shape)) {
-        const double tail = shape.base_extent().tail - body.cut_centre() - plate->chord * std::cos(plate->inner_angle);
-        take(tail, slope * tail);
+        // It leaves the hull where that is widest.
+        take(-(body.semi_x() + plate->chord * std::cos(plate->inner_angle)) - body.base_centre(), body.depth());
     }
     if (shape.protrusion) {
         const ExactBody::Foot foot = body.protrusion_foot();

@@ -184,9 +184,13 @@ int fit(Shell& shell, const Arguments& a) {
         list.push_back(surrogate);
         list.back()["fidelity"] = design.spec().fidelities.at(surrogate.fidelities().back()).name;
         const auto& check = surrogate.check();
+        const std::string& finest = design.spec().fidelities.at(surrogate.fidelities().back()).name;
         text += name + ": " + core::counted(check.points, "run") + " (" +
-                design.spec().fidelities.at(surrogate.fidelities().back()).name + ") of " +
-                core::counted(check.shapes, "shape") + "; on shapes left out the error is " +
+                (check.shapes_of_best == 0 ? "coarser than " + finest
+                 : check.shapes_of_best < check.shapes
+                     ? finest + " of " + core::counted(check.shapes_of_best, "shape") + ", coarser of the others"
+                     : finest) +
+                ") of " + core::counted(check.shapes, "shape") + "; on shapes left out the error is " +
                 core::format_number(check.root_mean_square, 3) + " " + surrogate.unit() +
                 (std::isfinite(check.nearest_shape) ? " (" + core::format_number(check.nearest_shape, 3) + " " +
                                                           surrogate.unit() + " by the nearest shape)"

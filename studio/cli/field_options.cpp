@@ -13,6 +13,7 @@
 #include "core/units.h"
 #include "postproc/importers/importer.h"
 #include "studio/cli/option_value.h"
+#include "studio/cli/shell.h"
 
 namespace underbody::studio {
 
@@ -92,7 +93,7 @@ void add_pattern(const std::string& text, Batch& batch) {
     }
     if (!missed.empty()) {
         batch.problems.push_back({core::Problem::Severity::warning,
-                                  "left out, for their names do not fit the pattern '" + text + "': " + missed,
+                                  std::string(Shell::left_out_by_pattern) + " '" + text + "': " + missed,
                                   {}});
     }
     for (const auto& one : found) {

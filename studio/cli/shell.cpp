@@ -266,7 +266,9 @@ void Shell::comment_warnings(core::Table& table) {
     for (const Warning& one : undocumented_) {
         if (std::none_of(table.comments.begin(), table.comments.end(),
                          [&](const std::string& comment) { return comment.find(one.message) != std::string::npos; })) {
-            table.comments.push_back("warning: " + with_flags(one.text));
+            // Other files are none of the table's: who reads it has no use for them at each step.
+            const bool of_others = one.message.starts_with(left_out_by_pattern);
+            table.comments.push_back((of_others ? "" : "warning: ") + with_flags(one.text));
         }
     }
     if (list_on_stdout && !json) {

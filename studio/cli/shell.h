@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -39,6 +40,9 @@ std::string version();
 class Shell {
 public:
     Shell();
+    /// How a warning begins that is of files that were not asked for.
+    static constexpr std::string_view left_out_by_pattern = "left out, for their names do not fit the pattern";
+
     /// For a program that runs commands in its own process: nothing goes to the terminal, all of it to the caller.
     Shell(Caller& caller, core::Progress::Listener listener);
 

@@ -158,11 +158,13 @@ public:
         const std::size_t passed_over = watch_->passed_over(), readings = watch_->readings();
         const bool nothing = watched == 0;
         const std::string alarms = std::to_string(alarms_) + (alarms_ == 1 ? " alarm" : " alarms");
-        std::string text = seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
-                           core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged; " +
-                           (nothing        ? "nothing was judged: the noise was still being learned"
-                            : alarms_ == 0 ? "the gap followed the model all the time"
-                                           : alarms);
+        std::string text =
+            seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
+            core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged; " +
+            (nothing        ? "nothing was judged: the noise was still being learned"
+             : alarms_ == 0 ? "nothing changed: the gap followed the model as it did while the noise was learned "
+                              "(what was wrong from the beginning is no change: predict and discover)"
+                            : alarms);
         text += pitch_too_ ? "; the pitch was taken as measured, whether it follows the model is not watched" : "";
         if (passed_over > 0) {
             text += "; " + core::counted(passed_over, "reading") + " whose time did not ascend " +

@@ -41,29 +41,32 @@ protected:
         one.body_height = 0.1269;
         return one;
     }
+    static std::optional<core::Problem> fault(const Study& study, const CaseLoads& loads) {
+        return BodiesOfCases(study).fault(loads);
+    }
     core::TemporaryFolder folder_;
 };
 
 TEST_F(BodyOfACase, IsHeldAgainstTheFile) {
-    EXPECT_FALSE(body_fault(study(), loads()));
+    EXPECT_FALSE(fault(study(), loads()));
     shape("100 mm");
-    const auto fault = body_fault(study(), loads());
-    ASSERT_TRUE(fault);
-    EXPECT_THAT(fault->message, testing::HasSubstr("not the shape 'ellipse' (plain.toml): it is 126.9 mm high in the "
+    const auto found = fault(study(), loads());
+    ASSERT_TRUE(found);
+    EXPECT_THAT(found->message, testing::HasSubstr("not the shape 'ellipse' (plain.toml): it is 126.9 mm high in the "
                                                    "file, 87.5 mm in the shape"));
     CaseLoads longer = loads();
     longer.body_length = 0.3;
-    EXPECT_THAT(body_fault(study(), longer)->message, testing::HasSubstr("300 mm long in the file"));
+    EXPECT_THAT(fault(study(), longer)->message, testing::HasSubstr("300 mm long in the file"));
     CaseLoads unknown = loads();
     unknown.body_length = unknown.body_height = NAN;
-    EXPECT_FALSE(body_fault(study(), unknown));
+    EXPECT_FALSE(fault(study(), unknown));
 }
 
 /// A pitched body is higher than it is long in its own axes: no fault of the shape.
 TEST_F(BodyOfACase, APitchedBodyIsTheSame) {
     CaseLoads pitched = loads();
     pitched.body_height = 0.1269 + 0.134 / 2 * std::sin(5 * M_PI / 180);
-    EXPECT_FALSE(body_fault(study(5 * M_PI / 180), pitched));
+    EXPECT_FALSE(fault(study(5 * M_PI / 180), pitched));
 }
 
 TEST_F(BodyOfACase, ItsTableIsNoLongerCfdOfThisShape) {

@@ -9,6 +9,7 @@
 
 #include "cases/design.h"
 #include "cases/design_proof.h"
+#include "cases/shape_loads.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/own_files.h"
@@ -282,8 +283,23 @@ TEST_F(DesignFiles, TheBestIsProvedOnTheFinestMesh) {
     core::write_file(folder_.path() / "study.toml", text);
     const auto other = proofs(open());
     ASSERT_EQ(other.size(), 1U);
-    EXPECT_THAT(other[0].note, testing::HasSubstr("for other objectives"));
+    EXPECT_THAT(other[0].note, testing::HasSubstr("for other conditions, objectives or limits"));
     EXPECT_TRUE(other[0].responses.empty());
+}
+
+/// The best may be a design that stands there already, but for rounding: it keeps its name and its numbers, so that the
+/// plan can be read again.
+TEST_F(DesignFiles, ABestThatIsPlannedKeepsItsNumbers) {
+    core::write_file(folder_.path() / "design" / "plan.csv",
+                     "design,protrusion.height [mm],body.base_cut [1],fidelity\nmine,1,0.7,coarse\n");
+    Design design = open();
+    tables::Candidate candidate;
+    candidate.at = {1e-3 * (1 + 1e-12), 0.7 * (1 - 1e-15)};
+    EXPECT_EQ(design.add_for_proof({candidate}), std::vector<std::string>{"mine"});
+    const Design again = open();
+    ASSERT_EQ(again.plan().size(), 2U);
+    EXPECT_EQ(again.plan()[1].fidelity, "medium");
+    EXPECT_EQ(again.plan()[1].at, again.plan()[0].at);
 }
 
 /// A body that touches the ground at a gap and pitch that [design] computes is no candidate, and that needs no run.
@@ -610,6 +626,11 @@ TEST_F(DesignFiles, WrongDesignsAreRefusedWithTheirPlace) {
                         "key = \"body.base_cut\"\nof = \"body.taper\""),
                 testing::HasSubstr("varies by itself"));
     EXPECT_THAT(refused("name = \"stiffness\"", "name = \"lift\""), testing::HasSubstr("two objectives 'lift'"));
+    EXPECT_THAT(refused("name = \"stiffness\"", "name = \"slope, mean\""), testing::HasSubstr("no commas"));
+    EXPECT_THAT(refused("[design.volume]",
+                        "[[design.limit]]\nname = \"lift\"\nquantity = \"lift_force\"\nat_least = \"0.1 N\"\n"
+                        "at = { gap = \"3 mm\", pitch = 0 }\n[design.volume]"),
+                testing::HasSubstr("an objective and a limit that are not of the same are both called 'lift'"));
     EXPECT_THAT(refused("at_least = \"0.1 L\"", "at_least = \"3 L\"\nat_most = \"2 L\""),
                 testing::HasSubstr("no design can meet both"));
     EXPECT_THAT(refused("[design.volume]",
@@ -756,6 +777,9 @@ TEST_F(DesignFiles, AProtrusionOfNoHeightIsNone) {
     const geometry::BodyShape base = geometry::read_shape(design.spec().shape);
     EXPECT_FALSE(shape_at(design.spec(), base, std::vector<double>{0, 0.75}).protrusion);
     EXPECT_TRUE(shape_at(design.spec(), base, std::vector<double>{1e-3, 0.75}).protrusion);
+    // And the way back.
+    const geometry::BodyShape none = shape_at(design.spec(), base, std::vector<double>{0, 0.75});
+    EXPECT_EQ(varied_numbers(design.spec(), base, none), (std::vector<double>{0, 0.75}));
 }
 
 TEST_F(DesignFiles, AShapeThatCannotBeIsKeptWithItsReason) {

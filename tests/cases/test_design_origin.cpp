@@ -129,6 +129,7 @@ TEST_F(OriginsOfRows, RowsSayOfThemselvesWhatTheyAreOf) {
     EXPECT_DOUBLE_EQ(table.numbers("gap").front(), 5e-3);
     EXPECT_DOUBLE_EQ(table.numbers("density").front(), 998);
     EXPECT_EQ(table.text("shape_hash").front().size(), 12u);
+    EXPECT_EQ(table.text("mesh_settings").front(), "blocks draft 800 iterations");
     core::write_csv(results(), table);
     fs::remove_all(folder_.path() / "design" / "runs");  // handed on without its fields
     EXPECT_EQ(usable(open()), 8u);
@@ -136,6 +137,9 @@ TEST_F(OriginsOfRows, RowsSayOfThemselvesWhatTheyAreOf) {
     put("evie.toml", "203.2 mm", "300 mm");
     EXPECT_THAT(said(open()), HasSubstr("another shape"));
     put("evie.toml", "300 mm", "0.2032 m");
+    put("study.toml", "name = \"draft\"", "name = \"draft\"\nmesh_density = \"coarse\"");
+    EXPECT_THAT(said(open()), HasSubstr("mesh: blocks draft 800 iterations there, blocks coarse 800 iterations now"));
+    put("study.toml", "\nmesh_density = \"coarse\"", "");
     put("study.toml", "points = 8", "points = 8\nspeed = \"1 m/s\"");
     EXPECT_THAT(said(open()), HasSubstr("speed: 0.5 m/s there, 1 m/s now"));
     // Where the condition varies, they are points of their own.
@@ -163,8 +167,8 @@ TEST_F(OriginsOfRows, RowsThatSayNothingAreTakenAndThatIsSaid) {
     ASSERT_EQ(design.notes.size(), 1u);
     EXPECT_EQ(design.notes.front().severity, core::Problem::Severity::note);
     EXPECT_THAT(design.notes.front().message,
-                HasSubstr("8 of 8 rows do not say all of gap, pitch, speed, density, kinematic_viscosity and "
-                          "shape_hash: taken as what [design] asks for now"));
+                HasSubstr("8 of 8 rows do not say all of gap, pitch, speed, density, kinematic_viscosity, "
+                          "shape_hash and mesh_settings: taken as what [design] asks for now"));
 }
 
 /// A folder that was copied has lost what says whose its files are.

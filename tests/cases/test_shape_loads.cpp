@@ -86,18 +86,18 @@ protected:
         core::write_file(path("study.toml"), "title = \"search\"\n[frame]\nsymmetry = \"y\"\n" + rest);
     }
     [[nodiscard]] Design open() const { return Design::open(Study::open(folder_.path())); }
-    void compute(const Design& design, double more) const {
+    void compute(const Design& design, double more, const std::string& density = "") const {
         std::string csv =
             "design,body.base_cut [1],gap [mm],pitch [deg],fidelity,lift_force [N],lift_force_sigma [N],pitch_moment "
             "[N "
-            "m],pitch_moment_sigma [N m],state\n";
+            "m],pitch_moment_sigma [N m],density [kg/m^3],state\n";
         for (const PlannedDesign& d : design.plan()) {
             for (const double gap : {2.0, 5.0, 12.0}) {
                 for (const double pitch : {-1.0, 1.0}) {
                     const double a = pitch * M_PI / 180;
                     csv += d.name + "," + std::to_string(d.at[0]) + "," + std::to_string(gap) + "," +
                            std::to_string(pitch) + ",coarse," + std::to_string(lift(d.at[0], gap / 1e3, a) + more) +
-                           ",0.0005," + std::to_string(0.3 * a) + ",0.0001,solved\n";
+                           ",0.0005," + std::to_string(0.3 * a) + ",0.0001," + density + ",solved\n";
                 }
             }
         }
@@ -226,6 +226,22 @@ TEST_F(ShapeLoadsOfAStudy, WhatItRestsOnMakesItAnew) {
     results = run();
     EXPECT_GE(results.computed, 1U);
     EXPECT_NEAR(gap(results), before, 0.2e-3);
+}
+
+/// What tells the rows of a search from those of something else is a part of it: other water, no row counts.
+TEST_F(ShapeLoadsOfAStudy, OtherWaterAndAnotherFolderMakeItAnew) {
+    write_study("[reference]\ndensity = \"998 kg/m^3\"\n" + design_toml + table_toml);
+    compute(open(), 0, "998");  // rows that say their water
+    EXPECT_EQ(run().tables.size(), 1U);
+    EXPECT_EQ(run().computed, 0U);
+    write_study("[reference]\ndensity = \"1025 kg/m^3\"\n" + design_toml + table_toml);
+    EXPECT_TRUE(run().tables.empty()) << "all rows are of other water";
+    write_study("[reference]\ndensity = \"998 kg/m^3\"\n" + design_toml + table_toml);
+    EXPECT_EQ(run().computed, 0U);
+    std::string other = design_toml;
+    other.replace(other.find("shape = "), 0, "folder = \"elsewhere\"\n");
+    write_study("[reference]\ndensity = \"998 kg/m^3\"\n" + other + table_toml);
+    EXPECT_TRUE(run().tables.empty()) << "nothing was computed there";
 }
 
 TEST_F(ShapeLoadsOfAStudy, AShapeThatIsNotThereFailsItsStepAlone) {

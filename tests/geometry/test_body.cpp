@@ -131,6 +131,19 @@ TEST(Placement, NamesThePointInTheMiddleOfSeveralEquallyLow) {
     EXPECT_EQ(clear.smallest, 0.01);
 }
 
+/// A tail plate leaves the hull at its midplane: it comes near the ground only at large angles.
+TEST(BodyClearance, OfATailPlateIsThatOfTheMidplane) {
+    BodyShape shape = evie();
+    shape.tail_plate = TailPlate{0.05, 1.0, 0};
+    BodyShape plain = evie();
+    for (const double pitch : {-0.05, 0.0, 0.05}) {
+        EXPECT_DOUBLE_EQ(clearance_of_base(shape, 5e-3, pitch), clearance_of_base(plain, 5e-3, pitch)) << pitch;
+    }
+    // Its tip: half the body and the chord behind, at the depth of the base above it.
+    const double behind = shape.length / 2 + 0.05, above = shape.base_depth(), pitch = 0.6;
+    EXPECT_NEAR(clearance_of_base(shape, 0.05, pitch), 0.05 + above * std::cos(pitch) - behind * std::sin(pitch), 5e-3);
+}
+
 /// Without a mesh it says what the mesh says, of every shape of the family.
 TEST(BodyClearance, OfTheBaseIsThatOfTheSurface) {
     std::mt19937 random(7);

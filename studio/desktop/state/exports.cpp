@@ -132,7 +132,7 @@ TableOfStudy table_of_study(const Session& session, const std::string& table) {
         found.before = "with \"csv\" among the exports of [[table]] '" + table + "' in study.toml";
     }
     std::error_code none;
-    if (!std::filesystem::is_regular_file(file, none) ||
+    if (found.origin.empty() || !std::filesystem::is_regular_file(file, none) ||
         core::read_file(file).find(found.origin) == std::string::npos) {
         found.first = line_of({"underbody", "study", "run", session.folder.string()});
     } else {

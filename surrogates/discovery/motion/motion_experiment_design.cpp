@@ -30,9 +30,15 @@ const dynamics::MeasuredRun& longest_run(const MotionRig& rig) {
 double size_of(const MotionRig& rig, const std::string& input) {
     std::vector<double> values;
     for (const MotionRecord& record : rig.records) {
-        const std::vector<double>& column = rig.data.runs[record.run].table.numbers(input);
-        std::copy_if(column.begin(), column.end(), std::back_inserter(values),
+        const core::Column* column = rig.data.runs[record.run].table.find(input);
+        if (column == nullptr || column->is_text()) {
+            continue;  // no such input in this run
+        }
+        std::copy_if(column->numbers.begin(), column->numbers.end(), std::back_inserter(values),
                      [](double x) { return std::isfinite(x); });
+    }
+    if (values.empty()) {
+        return 0;
     }
     return 0.5 * std::abs(rig.model.records.factor_of(input)) * (quantile(values, 0.95) - quantile(values, 0.05));
 }
@@ -46,6 +52,9 @@ std::vector<MotionTrial> waves(const MotionRig& rig, const dynamics::MeasuredRun
             continue;
         }
         const double size = size_of(rig, input);
+        if (!(size > 0)) {
+            continue;  // it hardly ever moves: no measure of what to add
+        }
         for (const double frequency : {0.0, 0.1, 0.3, 0.8, 2.0}) {
             MotionTrial trial{"", input, column->unit, time, {}, 0};
             const double strength = frequency > 0.5 ? 2 * size : size;

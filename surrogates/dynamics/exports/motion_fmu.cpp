@@ -279,7 +279,7 @@ const std::vector<std::string>& fmu_motions() {
 MotionFmu export_motion_fmu(const Model& declared, const std::filesystem::path& path, const MotionFmuOptions& options) {
     check_file(path, options.overwrite);
     const Model model = declared.resolved();
-    const Conditions held = options.held.over(model.conditions);
+    const Conditions held = options.held.over(model.conditions).over(references_of(model));
     MotionFmu fmu;
     fmu.file = path;
     fmu.remarks = motion_remarks(model, held);

@@ -7,6 +7,7 @@
 #include "surrogates/dynamics/model/file_formats.h"
 #include "surrogates/dynamics/model/mixed_drag.h"
 #include "surrogates/dynamics/model/model_items.h"
+#include "surrogates/tables/points/select.h"
 
 namespace underbody::dynamics {
 
@@ -168,7 +169,7 @@ void remark_on_water(Model& model, const ForceSource& source) {
 ForceSource read_force(const core::TomlTable& table, core::Problems& remarks) {
     const std::string quantity = table.choice(
         "quantity", {"lift_force", "drag_force", "side_force", "pitch_moment", "roll_moment", "yaw_moment"});
-    const core::Table points = core::read_csv(table.file("table"));
+    const core::Table points = tables::read_points(table.file("table"));
     tables::FitOptions options;
     if (table.has("axes")) {
         options.axes = table.strings("axes");

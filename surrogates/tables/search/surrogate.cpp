@@ -193,6 +193,10 @@ void Surrogate::check_left_out(core::Progress& progress) {
     for (const auto& [shape, points] : of_shape) {
         progress.check();
         const MultiFidelity others = process_.without(shape);
+        const std::size_t level = points.front().level;
+        if (level >= others.runs().size() || others.runs()[level].count() == 0) {
+            continue;  // no other shape was run on that fidelity: nothing predicts it
+        }
         double square = 0;
         check_.shapes_of_best += points.front().level + 1 == levels.size() ? 1 : 0;
         for (const LevelRun& point : points) {
@@ -219,7 +223,7 @@ void Surrogate::check_left_out(core::Progress& progress) {
         sum += s;
     }
     error_factor_ = std::sqrt(sum / (shapes_of_prior + static_cast<double>(squares.size())));
-    check_.shapes = of_shape.size();
+    check_.shapes = squares.size();
     check_.points = error.size();
     std::size_t inside = 0;
     for (std::size_t i = 0; i < error.size(); ++i) {

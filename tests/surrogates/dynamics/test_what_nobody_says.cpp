@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "core/own_files.h"
 #include "surrogates/dynamics/model/model.h"
-#include "surrogates/dynamics/plant/heave_plant.h"
+#include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/tables/exports/export.h"
 
@@ -65,7 +65,7 @@ TEST_F(UnsaidConditions, ACorrectionIsAtTheReferenceOfTheScales) {
 TEST_F(UnsaidConditions, SeveralReferencesAreNone) {
     EXPECT_EQ(references_of(model())[Channel::speed], 0.5);
     const Model two = model(
-        "[[force]]\nquantity = \"drag_force\"\ntable = \"lift.csv\"\ncolumn = \"lift_force\"\naxes = [\"gap\"]\n"
+        "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\naxes = [\"gap\"]\n"
         "scale.speed = { reference = \"0.6 m/s\", exponent = 2 }\n");
     EXPECT_FALSE(references_of(two).has(Channel::speed));
 }
@@ -101,6 +101,23 @@ TEST_F(UnsaidConditions, AWarningInTheHeadOfATableStaysWithIt) {
                 Contains("its mesh study is diverging"));
     (void)tables::export_table(table, "c", path("out.h"), {});
     EXPECT_THAT(core::read_file(path("out.h")), HasSubstr("its mesh study is diverging"));
+}
+
+/// An exported table may stand in a model in either form.
+TEST_F(UnsaidConditions, AnExportedTableStandsInAModelAsCsvAndAsJson) {
+    const core::ReplacingAllowed again;
+    const auto table = tables::ForceTable::read(path("lift.csv"), "lift_force");
+    Conditions said;
+    said[Channel::speed] = 0.5;
+    const double before = HeavePlant(model(), said).static_force(4e-3);
+    for (const char* file : {"out.csv", "out.json"}) {
+        (void)tables::export_table(table, std::string(file).substr(4), path(file), {});
+        core::write_file(path("other.toml"),
+                         "[vehicle]\nmass = \"2 kg\"\nadded_mass_heave = \"1 kg\"\nnet_weight = \"0.25 N\"\n[[force]]\n"
+                         "quantity = \"lift_force\"\ntable = \"" +
+                             std::string(file) + "\"\n");
+        EXPECT_NEAR(HeavePlant(read_model(path("other.toml")), said).static_force(4e-3), before, 1e-9) << file;
+    }
 }
 
 TEST(ReadingOnTheRig, IsSaidWhereLogsAreNotReadAsTheyStand) {
