@@ -57,8 +57,6 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
         for (const std::string& comment : points.comments) {
             key.add("said of them", comment);
         }
-        // a remark says where the model's are others
-        key.add("net_weight", table.net_weight.value_or(NAN)).add("virtual_mass", table.virtual_mass);
         if (const auto range = range_in_cases(table, engine.results, "density")) {
             key.add("density from", range->first).add("density to", range->second);
         }
@@ -69,6 +67,10 @@ Key region_key(const std::string& kind, const Engine& engine, const RegionSpec& 
 
 void run_one_region(Engine& engine, const RegionSpec& spec) {
     Key key = region_key("region", engine, spec);
+    for (const auto& name : spec.forces) {  // a remark says where the model's are others
+        const TableSpec& table = *engine.study.find_table(name);
+        key.add("net_weight", table.net_weight.value_or(NAN)).add("virtual_mass", table.virtual_mass);
+    }
     key.add("axes", spec.axes).add("for", spec.duration).add("columns", spec.columns).add("rows", spec.rows);
     std::string scratch_folder;  // a path of this moment, which a remark about a table may name
     Shared<dynamics::StabilityRegion> region(engine.states(), [&] {

@@ -426,13 +426,23 @@ QSize MainWindow::needed() const {
 void MainWindow::make_room() {
     const QMargins around = centralWidget()->layout()->contentsMargins();
     const QSize lack = needed().grownBy(around) - centralWidget()->size();
-    const auto give = [this](QDockWidget* dock, int size, int by, int least, Qt::Orientation along) {
-        if (by > 0 && dock->isVisible() && !dock->isFloating() && size > least) {
-            resizeDocks({dock}, {std::max(least, size - by)}, along);
+    // What was given is taken back where there is room again, unless somebody has moved the edge meanwhile.
+    const auto give = [this](QDockWidget* dock, GivenRoom& given, int size, int by, int least, Qt::Orientation along) {
+        if (!dock->isVisible() || dock->isFloating()) {
+            return;
+        }
+        constexpr int same = 8;  // px
+        if (given.by > 0 && std::abs(size - given.left) > same) {
+            given = {};
+        }
+        const int now = by > 0 ? std::max(std::min(size, least), size - by) : size + std::min(given.by, -by);
+        if (now != size) {
+            given = {given.by + size - now, now};
+            resizeDocks({dock}, {now}, along);
         }
     };
-    give(tree_dock_, tree_dock_->width(), lack.width(), least_tree, Qt::Horizontal);
-    give(below_dock_, below_dock_->height(), lack.height(), most_below, Qt::Vertical);
+    give(tree_dock_, tree_gave_, tree_dock_->width(), lack.width(), least_tree, Qt::Horizontal);
+    give(below_dock_, below_gave_, below_dock_->height(), lack.height(), most_below, Qt::Vertical);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

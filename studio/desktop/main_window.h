@@ -92,6 +92,11 @@ protected:
 private:
     [[nodiscard]] QSize needed() const;
     void make_room();
+    /// Of a dock, px: what it gave away for the workspace, and what it kept.
+    struct GivenRoom {
+        int by = 0, left = 0;
+    };
+    GivenRoom tree_gave_, below_gave_;
     void build_workspaces();
     void build_tree();
     void build_below();

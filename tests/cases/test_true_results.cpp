@@ -188,7 +188,8 @@ TEST_F(TrueResults, OneOptionMakesExactlyWhatRestsOnItNew) {
         {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\nlength = \"0.1 m\"\n",
          together(all_loads, {"verify solver"})},
         {"title = \"a cube\"\n", "title = \"a cube\"\n[reference]\ndensity = \"1000 kg/m^3\"\n",
-         together(all_loads, {"body hull", "verify solver", "region map"})},  // a map names tables of another water
+         together(all_loads,
+                  {"body hull", "verify solver", "region map", "model map"})},  // tables of a model say their water
         {"title = \"a cube\"\n", "title = \"a cube\"\n[frame]\nmoments_about = [0, 0, 0.001]\n",
          together(all_loads, {"verify solver"})},  // forces do not know the point of the moments: their tables stay
     };

@@ -156,6 +156,21 @@ std::map<std::size_t, std::vector<LevelRun>> best_runs(const std::vector<Fidelit
     return of_shape;
 }
 
+/// The runs of a shape on the best of its fidelities, `best` at most, that others were run on as well.
+std::vector<LevelRun> predicted_runs(const std::vector<FidelityRuns>& levels, const std::vector<FidelityRuns>& others,
+                                     std::size_t shape, std::size_t best) {
+    std::vector<LevelRun> runs;
+    for (std::size_t level = best + 1; level-- > 0 && runs.empty();) {
+        const bool known = level < others.size() && others[level].count() > 0;
+        for (std::size_t i = 0; known && i < levels[level].count(); ++i) {
+            if (levels[level].group[i] == shape) {
+                runs.push_back({level, i});
+            }
+        }
+    }
+    return runs;
+}
+
 /// What the nearest run of another shape says: of the same fidelity, else of any; nothing where there is none.
 std::optional<double> nearest_value(const std::vector<FidelityRuns>& levels, const LevelRun& of, std::size_t axes) {
     const std::size_t shape = levels[of.level].group[of.run];
@@ -190,15 +205,15 @@ void Surrogate::check_left_out(core::Progress& progress) {
     std::vector<double> squares;  // of standardised errors, the mean of each shape
     double own = 0, nearest = 0;
     std::vector<double> error, sigma;
-    for (const auto& [shape, points] : of_shape) {
+    for (const auto& [shape, best] : of_shape) {
         progress.check();
         const MultiFidelity others = process_.without(shape);
-        const std::size_t level = points.front().level;
-        if (level >= others.runs().size() || others.runs()[level].count() == 0) {
-            continue;  // no other shape was run on that fidelity: nothing predicts it
+        const std::vector<LevelRun> points = predicted_runs(levels, others.runs(), shape, best.front().level);
+        if (points.empty()) {
+            continue;  // no other shape was run on its fidelities: nothing predicts it
         }
         double square = 0;
-        check_.shapes_of_best += points.front().level + 1 == levels.size() ? 1 : 0;
+        check_.shapes_of_best += best.front().level + 1 == levels.size() ? 1 : 0;
         for (const LevelRun& point : points) {
             const FidelityRuns& runs = levels[point.level];
             const std::size_t i = point.run;

@@ -46,8 +46,8 @@ struct SurrogatePrediction {
 };
 
 /// How it does on shapes that it did not see: every shape left out once with all its runs, parameters held. A shape's
-/// runs of the best fidelity that it has are compared with the prediction of that fidelity; a shape that alone was run
-/// on its fidelity is not checked.
+/// runs of the best fidelity that others have too are compared with the prediction of that fidelity; a shape that
+/// shares none is not checked.
 struct LeftOutCheck {
     std::size_t shapes = 0;
     std::size_t shapes_of_best = 0;  ///< of these, how many have runs of the highest fidelity

@@ -140,7 +140,7 @@ TEST_F(Window, EveryPlotAndTableIsCopied) {
     const QStringList rows = QApplication::clipboard()->text().split('\n', Qt::SkipEmptyParts);
     ASSERT_EQ(rows.size(), 2) << QApplication::clipboard()->text().toStdString();
     EXPECT_EQ(rows[0].toStdString(), "result\tnow\tbefore");
-    EXPECT_TRUE(rows[1].startsWith("buoyancy\t")) << rows[1].toStdString();
+    EXPECT_TRUE(rows[1].startsWith("stable gaps\t")) << rows[1].toStdString();
 }
 
 TEST_F(Window, AStartIsChosenByKeyboard) {
