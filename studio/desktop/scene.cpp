@@ -220,8 +220,20 @@ void Scene::Parts::size_marker() {
     }
 }
 
-/// The bar stands as far from the edge as its longest number and its title ask for.
+/// In a small view the full title would be cut: the name stands beside the views.
+void Scene::Parts::title_bar() {
+    const bool small = widget->width() < 520 || widget->height() < 260;
+    std::string title = small ? pretty_unit(bar_unit) : axis_title(bar_label, bar_unit);
+    if (9.0 * static_cast<double>(title.size()) > 0.14 * widget->width()) {  // over the bar there is room for a word
+        std::replace(title.begin(), title.end(), ' ', '\n');
+    }
+    bar->SetTitle(title.c_str());
+    bar->SetNumberOfLabels(small ? 3 : 5);  // odd: zero is one of them where the colours lie around it
+}
+
+/// The bar stands as far from the edge as its longest number and its title ask for; both as the view is now.
 void Scene::Parts::size_bar() {
+    title_bar();
     const double wide = std::max(1, window->GetSize()[0]);
     const auto room_of = [this](vtkTextProperty& property, const std::string& text) {
         std::array<int, 4> box{};
@@ -431,14 +443,9 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     } else {
         p.colours->SetVectorModeToMagnitude();
     }
-    // In a small view the full title would be cut: the name stands beside the views.
-    const bool small = p.widget->width() < 520 || p.widget->height() < 260;
-    std::string title = small ? pretty_unit(choice.unit) : axis_title(choice.label, choice.unit);
-    if (9.0 * static_cast<double>(title.size()) > 0.14 * p.widget->width()) {  // over the bar there is room for a word
-        std::replace(title.begin(), title.end(), ' ', '\n');
-    }
-    p.bar->SetTitle(title.c_str());
-    p.bar->SetNumberOfLabels(small ? 3 : 5);  // odd: zero is one of them where the colours lie around it
+    p.bar_label = choice.label;
+    p.bar_unit = choice.unit;
+    p.title_bar();
     p.bar->SetVisibility(any && p.tinted.empty());
 }
 

@@ -108,6 +108,8 @@ struct Scene::Parts : QObject {
     void dress_dot();
     void size_marker();
     void size_bar();
+    void title_bar();
+    std::string bar_label, bar_unit;  ///< of what is coloured
     void ask_for_whole();
     /// Of the zones that are seen.
     void show_actors(bool shown);
