@@ -48,6 +48,7 @@ TEST_F(OnScreen, VeryManyFacesAreTurnedAsFewerAndDrawnWholeAtRest) {
     QTRY_VERIFY_WITH_TIMEOUT(fields.drawn() == 1 || !window_->last_error().isEmpty(), 60000);
     ASSERT_EQ(fields.drawn(), 1U) << window_->last_error().toStdString();
     ASSERT_NE(view(), nullptr);
+    QTest::qWait(50);  // the view is fitted in the next turns of the loop, later beside other work
     EXPECT_TRUE(fields.stands_in(0)) << "before the whole is drawn";
     const QImage fewer = picture();
     QTRY_VERIFY_WITH_TIMEOUT(!fields.stands_in(0), 60000);
