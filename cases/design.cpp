@@ -22,19 +22,10 @@ using tables::SearchVariable;
 
 namespace {
 
-/// At the same place, equal but for the rounding of a file.
-bool same_place(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-        if (std::abs(a.at[v] - b.at[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /// The same case.
 bool is_same(const std::vector<SearchVariable>& variables, const DesignRun& a, const DesignRun& b) {
-    return a.design == b.design && a.fidelity == b.fidelity && same_place(variables, a, b) && agree(a.origin, b.origin);
+    return a.design == b.design && a.fidelity == b.fidelity && same_numbers(variables, a.at, b.at) &&
+           agree(a.origin, b.origin);
 }
 
 /// A run that stands twice counts once: of rows of one design the last that has loads, as where it is computed again;
@@ -46,7 +37,7 @@ void find_repeated(const DesignSpec& spec, const core::Table& table, std::vector
     for (std::size_t i = 1; i < runs.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             DesignRun &first = runs[j], &later = runs[i];
-            if (!first.counts() || !later.counts() || !same_place(variables, first, later) ||
+            if (!first.counts() || !later.counts() || !same_numbers(variables, first.at, later.at) ||
                 first.fidelity != later.fidelity) {
                 continue;
             }

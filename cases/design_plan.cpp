@@ -52,16 +52,6 @@ void read_predictions(const DesignSpec& spec, const core::Table& table, std::vec
     }
 }
 
-/// Equal but for the rounding of a file.
-bool is_same_design(const DesignSpec& spec, const std::vector<double>& a, const std::vector<double>& b) {
-    for (std::size_t v = 0; v < a.size(); ++v) {
-        if (std::abs(a[v] - b[v]) > 1e-7 * (spec.variables[v].upper - spec.variables[v].lower)) {
-            return false;
-        }
-    }
-    return true;
-}
-
 std::vector<PlannedDesign> planned_in(const DesignSpec& spec, const core::Table& table) {
     const std::string& file = table.source;
     std::vector<PlannedDesign> plan(table.rows());
@@ -83,7 +73,7 @@ std::vector<PlannedDesign> planned_in(const DesignSpec& spec, const core::Table&
     for (std::size_t i = 0; i < plan.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (plan[i].name == plan[j].name &&
-                (plan[i].fidelity == plan[j].fidelity || !is_same_design(spec, plan[i].at, plan[j].at))) {
+                (plan[i].fidelity == plan[j].fidelity || !same_numbers(spec.variables, plan[i].at, plan[j].at))) {
                 throw core::InputError("duplicate", "the design " + plan[i].name + " stands twice",
                                        table.place(i, "design"), "a name of its own for each");
             }
@@ -241,7 +231,7 @@ std::vector<std::string> Design::add(const std::vector<tables::Candidate>& candi
                              what_is_asked()};
         bool planned = false;
         for (const PlannedDesign& d : plan_) {
-            if (is_same_design(spec_, d.at, c.at)) {
+            if (same_numbers(spec_.variables, d.at, c.at)) {
                 chosen.name = d.name;  // one shape, one name, on each of its meshes
                 chosen.at = d.at;
                 planned = planned || d.fidelity == chosen.fidelity;

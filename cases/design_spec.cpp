@@ -13,6 +13,7 @@
 #include "geometry/body/exact_body.h"
 #include "geometry/body/variants.h"
 #include "geometry/water/placement.h"
+#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/search/sampling.h"
 
 namespace underbody::cases {
@@ -488,13 +489,23 @@ std::vector<tables::Response> DesignSpec::responses() const {
     return all;
 }
 
+bool same_numbers(const std::vector<tables::SearchVariable>& variables, std::span<const double> a,
+                  std::span<const double> b) {
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+        if (std::abs(a[v] - b[v]) > 1e-7 * (variables[v].upper - variables[v].lower)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::string response_unit(const tables::Response& response) {
     const std::string unit = core::find_quantity(response.quantity)->unit;
     if (response.slope_along.empty()) {
         return unit;
     }
     const auto* along = core::find_quantity(response.slope_along);
-    return along == nullptr || along->unit == "1" ? unit : unit + "/" + along->unit;
+    return along == nullptr || along->unit == "1" ? unit : tables::unit_per(unit, along->unit);
 }
 
 }  // namespace underbody::cases

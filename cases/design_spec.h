@@ -57,6 +57,10 @@ void check_responses(const DesignSpec& spec);
 /// The tables of [design], for the format of study.toml.
 std::vector<core::FileTable> design_tables();
 
+/// Varied numbers of one design, equal but for the rounding of a file; the first `variables.size()` of each count.
+bool same_numbers(const std::vector<tables::SearchVariable>& variables, std::span<const double> a,
+                  std::span<const double> b);
+
 /// Which of the fidelities it is. Throws core::InputError with the nearest name; `where` begins the message.
 std::size_t level_of(const DesignSpec& spec, const std::string& fidelity, const std::string& where);
 

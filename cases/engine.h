@@ -27,8 +27,13 @@ struct Made {
     std::string identity;  ///< StoredResult::identity
     std::string summary;
 
-    /// Enough of the identity to find the result again: what exported files say in their heads.
+    /// Enough of the identity to find the result again.
     [[nodiscard]] std::string id_for_files() const { return identity.substr(0, 16); }
+    /// What exported files of it say in their heads, by which they are known.
+    [[nodiscard]] std::string origin_line() const {
+        return "Result: " + kind + "/" + name + " " + id_for_files() +
+               " (underbody study why STUDY FILE says what it is made of)";
+    }
 };
 
 /// What a result is made with besides files: options, conditions, code, other results. Files are noted when they are

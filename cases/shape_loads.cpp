@@ -183,13 +183,10 @@ SurrogateBasis surrogate_basis(const DesignSpec& spec, const std::vector<std::ve
                                const std::vector<double>& at) {
     SurrogateBasis basis;
     basis.shapes = solved.size();
-    for (const auto& one : solved) {
-        bool same = true;
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            same = same && std::abs(one[i] - at[i]) <= 1e-6 * std::max(std::abs(at[i]), 1e-9);
-        }
-        basis.run = basis.run || same;
-    }
+    basis.run = std::any_of(solved.begin(), solved.end(), [&](const auto& one) {  // rounded as their file has them
+        return std::equal(one.begin(), one.end(), at.begin(),
+                          [](double a, double b) { return std::abs(a - b) <= 1e-6 * std::max(std::abs(b), 1e-9); });
+    });
     for (std::size_t i = 0; i < at.size(); ++i) {
         const auto& variable = spec.variables[i];
         const double rounding = 1e-9 * (variable.upper - variable.lower);

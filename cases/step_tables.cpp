@@ -144,8 +144,7 @@ std::string compute_export(const TableSpec& spec, const std::string& format, con
     const Scratch folder;
     tables::ExportOptions options;
     options.name = export_name(spec.name);
-    options.provenance = {"Result: table/" + spec.name + " " + made.id_for_files() +
-                          " (underbody study why STUDY FILE says what it is made of)"};
+    options.provenance = {made.origin_line()};
     const auto path = folder.path() / export_file(spec.name, format);
     return packed(tables::export_table(table, format, path, options, progress).files);
 }

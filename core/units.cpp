@@ -281,6 +281,12 @@ Quantity parse_quantity(std::string_view text, const Place& place) {
         throw InputError("parse", "'" + std::string(text) + "' is not a number with a unit", place,
                          "write a number, a blank and a unit, such as '5 mm'");
     }
+    if (end + 1 < whole.size() && whole[end] == ',' && whole[end + 1] >= '0' && whole[end + 1] <= '9') {
+        std::string right(whole);
+        right[end] = '.';
+        throw InputError("parse", "'" + std::string(whole) + "' is a number with a decimal comma", place,
+                         "write it with '.' as decimal point: " + right);
+    }
     const std::string unit(trimmed(whole.substr(end)));
     if (!unit.empty() && !is_unit(unit)) {
         unknown_unit(unit, place);

@@ -150,7 +150,9 @@ std::string of_folder(const fs::path& path) {
 bool has_lone_returns(const fs::path& path) {
     const std::string head = head_of(path);
     return head.find('\r') != std::string::npos && head.find('\n') == std::string::npos &&
-           head.find('\0') == std::string::npos;
+           std::all_of(head.begin(), head.end(), [](unsigned char c) {  // of a text
+               return c >= ' ' || c == '\t' || c == '\r' || c == '\f';
+           });
 }
 
 std::string what_it_is(const fs::path& path) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core/counted.h"
@@ -247,7 +248,8 @@ struct Balance {
 };
 
 /// Of a model: the whole vehicle at rest. Says its weight and mass where the command does not.
-Balance balance_of_model(Shell& shell, const EquilibriaCommand& command, const tables::EquilibriumOptions& asked) {
+Balance balance_of_model(Shell& shell, const dynamics::Model& model, const EquilibriaCommand& command,
+                         const tables::EquilibriumOptions& asked) {
     dynamics::BalanceOptions options;
     options.held = command.table.conditions();
     for (const auto& [name, value] : asked.held) {
@@ -262,7 +264,7 @@ Balance balance_of_model(Shell& shell, const EquilibriaCommand& command, const t
     options.damping = asked.damping;
     options.scale = asked.scale;
     options.draws = asked.draws;
-    auto of_model = dynamics::model_equilibria(dynamics::read_model(command.table.file), options, shell.progress());
+    auto of_model = dynamics::model_equilibria(model, options, shell.progress());
     std::string text = command.weight.empty() ? "net weight " + core::told(of_model.net_weight, "N") : "";
     if (command.mass.empty()) {
         text += std::string(text.empty() ? "" : ", ") + "virtual mass " +
@@ -343,11 +345,13 @@ int run_equilibria(Shell& shell, const EquilibriaCommand& command) {
     of_table.at_rest = is_model;
     tables::Held asked = options.held;
     const auto table = of_table.fit(shell, is_model ? &asked : nullptr);
-    Balance balance = is_model ? balance_of_model(shell, command, options)
+    const std::optional<dynamics::Model> model =
+        is_model ? std::optional(dynamics::read_model(command.table.file)) : std::nullopt;
+    Balance balance = is_model ? balance_of_model(shell, *model, command, options)
                                : Balance{tables::equilibria(table, options), table, options, {}};
     tables::Equilibria& found = balance.found;
     if (is_model) {
-        complete_at_rest(dynamics::read_model(command.table.file), table, asked, found.remarks);
+        complete_at_rest(*model, table, asked, found.remarks);
         hold_axes(found, table, asked);
     }
     shell.show(found.remarks);

@@ -109,6 +109,7 @@ void ExportDialog::add_choices(QFormLayout& form) {
     single_ = new QCheckBox("&float instead of double (C)");
     form.addRow(single_);
     max_error_ = new QLineEdit;
+    max_error_->setObjectName("largest error");
     max_error_->setPlaceholderText("none: the full grid");
     form.addRow("&Error allowed, % of the range", max_error_);
 }
@@ -156,12 +157,11 @@ tables::ExportOptions ExportDialog::options() const {
         options.provenance = {of_.origin};
     }
     if (const std::string text = max_error_->text().trimmed().remove('%').toStdString(); !text.empty()) {
-        refuse_decimal_comma(text);
-        const auto percent = core::parse_number(text);
-        if (!percent || !(*percent > 0 && *percent < 100)) {
+        const double percent = core::parse_in(text, "1");
+        if (!(percent > 0 && percent < 100)) {
             throw core::UsageError("range", "the error allowed is a share between 0 and 100 %");
         }
-        options.max_error = *percent / 100;
+        options.max_error = percent / 100;
     }
     return options;
 }

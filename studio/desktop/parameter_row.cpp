@@ -4,7 +4,6 @@
 #include <QBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
-#include <QRegularExpression>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QStatusTipEvent>
@@ -21,16 +20,6 @@ namespace underbody::studio {
 
 namespace {
 constexpr int steps = 1000;
-}
-
-void refuse_decimal_comma(const std::string& text) {
-    static const QRegularExpression number("^\\s*[-+]?\\d*,\\d");
-    if (number.match(qt(text)).hasMatch()) {
-        std::string right = text;
-        right[right.find(',')] = '.';
-        throw core::InputError("parse", "'" + text + "' is a number with a decimal comma", {},
-                               "write it with '.' as decimal point: " + right);
-    }
 }
 
 NumberEdit::NumberEdit(const std::string& unit, const std::string& shown, QWidget* parent)
@@ -71,7 +60,6 @@ double NumberEdit::parsed(const QString& text) const {
     // Units as people write them, back to how files write them.
     plain.replace(QChar(0x2212), "-").replace(QChar(0xb0) + QString("C"), "degC").replace(QChar(0xb0), "deg");
     plain.replace(QChar(0xb2), "^2").replace(QChar(0xb3), "^3").replace(QChar(0xb7), " ");
-    refuse_decimal_comma(plain.toStdString());
     if (const auto number = core::parse_number(plain.toStdString())) {
         return core::convert(*number, shown_, unit_);  // a bare number is in the unit that stands there
     }

@@ -13,9 +13,6 @@ class QToolButton;
 
 namespace underbody::studio {
 
-/// Throws core::InputError for a number with a decimal comma ("0,5", "0,28 N").
-void refuse_decimal_comma(const std::string& text);
-
 /// Shows every digit that the number has (at most 12). Takes a text with any unit of its kind on Enter or when the
 /// focus leaves; what does not parse turns red and is not taken. Up and down step by one in the second digit.
 class NumberEdit : public QLineEdit {

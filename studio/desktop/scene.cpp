@@ -221,7 +221,7 @@ void Scene::Parts::size_marker() {
 }
 
 /// In a small view the full title would be cut: the name stands beside the views.
-void Scene::Parts::title_bar() {
+std::string Scene::Parts::title_bar() {
     const bool small = widget->width() < 520 || widget->height() < 260;
     std::string title = small ? pretty_unit(bar_unit) : axis_title(bar_label, bar_unit);
     if (9.0 * static_cast<double>(title.size()) > 0.14 * widget->width()) {  // over the bar there is room for a word
@@ -229,11 +229,19 @@ void Scene::Parts::title_bar() {
     }
     bar->SetTitle(title.c_str());
     bar->SetNumberOfLabels(small ? 3 : 5);  // odd: zero is one of them where the colours lie around it
+    return title;
 }
 
 /// The bar stands as far from the edge as its longest number and its title ask for; both as the view is now.
 void Scene::Parts::size_bar() {
-    title_bar();
+    const double* range = colours->GetTableRange();
+    const auto now = std::make_tuple(widget->width(), widget->height(), window->GetSize()[0], range[0], range[1],
+                                     bar_label, bar_unit);
+    if (now == bar_sized_for) {
+        return;  // another camera alone: nothing to be measured
+    }
+    bar_sized_for = now;
+    const std::string title = title_bar();
     const double wide = std::max(1, window->GetSize()[0]);
     const auto room_of = [this](vtkTextProperty& property, const std::string& text) {
         std::array<int, 4> box{};
@@ -242,7 +250,6 @@ void Scene::Parts::size_bar() {
                            renderer_of_text->GetBoundingBox(&property, text, box.data(), window->GetDPI());
         return known ? box[1] - box[0] + 1 : 9 * static_cast<int>(text.size());
     };
-    const double* range = colours->GetTableRange();
     const int labels = bar->GetNumberOfLabels();
     int numbers = 0;
     for (int i = 0; i < labels; ++i) {
@@ -250,8 +257,7 @@ void Scene::Parts::size_bar() {
         numbers =
             std::max(numbers, room_of(*bar->GetLabelTextProperty(), QString::asprintf("%.3g", value).toStdString()));
     }
-    const char* title = bar->GetTitle();
-    const int words = title != nullptr ? room_of(*bar->GetTitleTextProperty(), title) : 0;
+    const int words = room_of(*bar->GetTitleTextProperty(), title);
     constexpr int pads = 12;  // beside colours, numbers and edge
     const double thick = std::max(0.0275 * wide, 8.0 * widget->devicePixelRatioF());
     const double room =
@@ -445,7 +451,6 @@ void Scene::colour_by(const Choice& choice, std::array<double, 2> range) {
     }
     p.bar_label = choice.label;
     p.bar_unit = choice.unit;
-    p.title_bar();
     p.bar->SetVisibility(any && p.tinted.empty());
 }
 

@@ -20,6 +20,7 @@
 #include <vtkTexture.h>
 
 #include <QTimer>
+#include <tuple>
 #include <vector>
 
 #include "postproc/loads/mirror_plane.h"
@@ -108,8 +109,10 @@ struct Scene::Parts : QObject {
     void dress_dot();
     void size_marker();
     void size_bar();
-    void title_bar();
     std::string bar_label, bar_unit;  ///< of what is coloured
+    std::string title_bar();
+    /// Size of the view and its pixels across, ends of the colours, what they are of.
+    std::tuple<int, int, int, double, double, std::string, std::string> bar_sized_for;
     void ask_for_whole();
     /// Of the zones that are seen.
     void show_actors(bool shown);

@@ -7,6 +7,15 @@
 
 namespace underbody::discovery {
 
+namespace {
+
+// In -2 log likelihood; set on late inputs of heave (LateInput tests), the same for coupled motions.
+constexpr double reading_gain = 40;  ///< by which another reading must be likelier than the inputs as logged
+constexpr double said_as_gain = 60;  ///< by which it may be worse where a gain with a name says the same
+constexpr double effect_gain = 10;   ///< by which an effect beside must be likelier than before the logs were mended
+
+}  // namespace
+
 std::vector<std::size_t> beside_the_input(const std::vector<FittedHypothesis>& fitted, std::size_t singles,
                                           const dynamics::Model& model) {
     constexpr std::size_t most = 3;
@@ -35,7 +44,7 @@ double least_cost(const std::vector<std::size_t>& beside, const CostsAsRead& cos
             with = i;
         }
     }
-    if (with && least_with < cost && least_with < costs.before(*with) - 10) {
+    if (with && least_with < cost && least_with < costs.before(*with) - effect_gain) {
         return std::min(cost, costs.again(*with));
     }
     return cost;
@@ -43,7 +52,7 @@ double least_cost(const std::vector<std::size_t>& beside, const CostsAsRead& cos
 
 InputReading better_input(const InputSearch& search) {
     InputReading best;
-    double least = search.as_logged - 40;
+    double least = search.as_logged - reading_gain;
     const auto attempt = [&](const InputReading& reading) {
         if (reading.early < 0 || reading.early > search.longest) {
             return;
@@ -64,7 +73,7 @@ InputReading better_input(const InputSearch& search) {
         attempt({middle + step});
     }
     if (best.early == 0 && search.gain) {
-        least += 60;  // the same said with a name; the slip is the likelier story
+        least += said_as_gain;  // the same said with a name; the slip is the likelier story
     }
     for (const std::string& column : search.columns) {
         for (const double times : {1e-3, 1e3, -1.0}) {

@@ -8,129 +8,20 @@
 #include <nlohmann/json.hpp>
 
 #include "cases/design.h"
-#include "cases/design_proof.h"
 #include "cases/shape_loads.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/own_files.h"
 #include "core/units.h"
 #include "surrogates/tables/search/limits_alone.h"
+#include "tests/cases/design_files.h"
 
 namespace {
 
 using namespace underbody;
 using namespace underbody::cases;
+using namespace underbody::cases::design_search;
 namespace fs = std::filesystem;
-
-constexpr const char* design_toml = R"(
-title = "search"
-[frame]
-symmetry = "y"
-[design]
-shape = "evie.toml"
-points = 16
-gap = ["3 mm", "5 mm", "10 mm"]
-pitch = ["-1 deg", "1 deg"]
-quantities = ["lift_force", "pitch_moment"]
-[[design.vary]]
-key = "protrusion.height"
-from = "0.5 mm"
-to = "3 mm"
-[[design.vary]]
-key = "body.base_cut"
-from = 0.6
-to = 0.85
-[[design.tie]]
-key = "protrusion.length"
-of = "protrusion.height"
-factor = 12
-[[design.fidelity]]
-name = "coarse"
-cell = 0.25
-cost = "40 s"
-[[design.fidelity]]
-name = "medium"
-cost = "160 s"
-[[design.objective]]
-name = "lift"
-quantity = "lift_force"
-sense = "maximise"
-at = { gap = "5 mm", pitch = 0 }
-[[design.objective]]
-name = "stiffness"
-quantity = "pitch_moment"
-slope_along = "pitch"
-sense = "minimise"
-at = { gap = "5 mm", pitch = 0 }
-[design.volume]
-at_least = "0.1 L"
-)";
-
-constexpr const char* shape_toml = R"(
-[body]
-length = "203.2 mm"
-width = "152 mm"
-height = "145 mm"
-base_cut = 0.75
-[protrusion]
-position = 0.8
-height = "1 mm"
-length = "20 mm"
-)";
-
-/// Smooth loads in place of a solver.
-double lift(double height, double cut, double gap, double pitch) {
-    return 0.3 * std::pow(gap / 5e-3, -0.5) * (1 + 60 * height - std::pow((cut - 0.72) / 0.1, 2) * 0.3) + 2 * pitch;
-}
-double moment(double height, double cut, double gap, double pitch) {
-    return 0.4 * pitch * (1 - 300 * height) * std::pow(gap / 5e-3, -0.4) - 0.007 + 0.004 * cut;
-}
-
-/// The highest ridge with which a base of that cut clears the ground at all gaps and pitches of the search.
-double highest(const Design& design, double cut) {
-    const auto base = geometry::read_shape(design.spec().shape);
-    double low = 0.5e-3, high = 3e-3;
-    for (int i = 0; i < 40; ++i) {
-        const double middle = 0.5 * (low + high);
-        (broken_by(design.spec(), base, std::vector<double>{middle, cut}) <= 0 ? low : high) = middle;
-    }
-    return low;
-}
-
-class DesignFiles : public testing::Test {
-protected:
-    DesignFiles() {
-        core::write_file(folder_.path() / "study.toml", design_toml);
-        core::write_file(folder_.path() / "evie.toml", shape_toml);
-    }
-
-    [[nodiscard]] Design open() const { return Design::open(Study::open(folder_.path())); }
-
-    /// What another solver would put there: every design at every condition.
-    void compute(const Design& design, bool leave_out_last = false) const {
-        std::string csv =
-            "design,protrusion.height [mm],body.base_cut [1],gap [mm],pitch [deg],fidelity,lift_force "
-            "[N],lift_force_sigma [N],"
-            "pitch_moment [N m],pitch_moment_sigma [N m],state\n";
-        std::size_t index = 0;
-        for (const PlannedDesign& d : design.plan()) {
-            const bool failed = leave_out_last && ++index == design.plan().size();
-            for (const double gap : {3.0, 5.0, 10.0}) {
-                for (const double pitch : {-1.0, 1.0}) {
-                    const double a = pitch * M_PI / 180;
-                    csv += d.name + "," + std::to_string(1e3 * d.at[0]) + "," + std::to_string(d.at[1]) + "," +
-                           std::to_string(gap) + "," + std::to_string(pitch) + "," + d.fidelity + ",";
-                    csv += failed ? ",,,,diverged\n"
-                                  : std::to_string(lift(d.at[0], d.at[1], gap / 1e3, a)) + ",0.0005," +
-                                        std::to_string(moment(d.at[0], d.at[1], gap / 1e3, a)) + ",0.00001,solved\n";
-                }
-            }
-        }
-        core::write_file(folder_.path() / "design" / "results.csv", csv);
-    }
-
-    core::TemporaryFolder folder_;
-};
 
 TEST_F(DesignFiles, APlanIsWrittenOnceAndGoesOn) {
     Design design = open();
@@ -230,120 +121,6 @@ TEST_F(DesignFiles, WhatIsPlannedIsNotProposedAgain) {
         known.add(next, "expected improvement");
     }
     EXPECT_EQ(open().plan().size(), 20u);
-}
-
-/// The best by the surrogates goes to the finest mesh with what was said of it, and that stays beside the result.
-TEST_F(DesignFiles, TheBestIsProvedOnTheFinestMesh) {
-    Design design = open();
-    design.make_plan();
-    compute(design);
-    design = open();
-    EXPECT_TRUE(proofs(design).empty());
-    const auto search = design.search(design.surrogates());
-    const auto best = search.optimum(1, 1);
-    ASSERT_TRUE(best);
-    const auto names = design.add_for_proof({*best});
-    ASSERT_EQ(names, std::vector<std::string>{"design-017"});
-    EXPECT_EQ(design.add_for_proof({*best}), names);  // it stands there
-    ASSERT_EQ(design.plan().size(), 17U);
-    EXPECT_EQ(design.plan().back().fidelity, "medium");
-    EXPECT_THAT(design.plan().back().why, testing::HasSubstr("to be proved on medium"));
-
-    design = open();  // as plan.csv has it
-    ASSERT_EQ(proofs(design).size(), 1U);
-    EXPECT_EQ(proofs(design)[0].note, "not computed yet");
-    const auto& said = design.plan().back().predicted;
-    ASSERT_EQ(said.size(), 2U);
-    EXPECT_NEAR(said.at("lift").value, best->objectives[0].value, 1e-9);
-    EXPECT_NEAR(said.at("stiffness").sigma, best->objectives[1].sigma, 1e-9);
-    EXPECT_TRUE(design.plan().front().predicted.empty());
-
-    compute(design);
-    design = open();
-    const auto all = proofs(design);
-    ASSERT_EQ(all.size(), 1U);
-    EXPECT_EQ(all[0].note, "");
-    ASSERT_EQ(all[0].responses.size(), 2U);
-    const auto& at = design.plan().back().at;
-    const auto &level = all[0].responses[0], &stiffness = all[0].responses[1];
-    ASSERT_TRUE(level.computed && stiffness.computed);
-    EXPECT_NEAR(level.computed->value, lift(at[0], at[1], 5e-3, 0), 2e-6);  // six decimals in the file
-    EXPECT_NEAR(level.computed->sigma, 0.0005 / std::sqrt(2), 1e-9);        // mean of two runs
-    const double one = M_PI / 180;
-    EXPECT_NEAR(stiffness.computed->value,
-                (moment(at[0], at[1], 5e-3, one) - moment(at[0], at[1], 5e-3, -one)) / (2 * one), 1e-4);
-    EXPECT_EQ(stiffness.unit, "N m/rad");
-    EXPECT_LT(std::abs(level.difference_in_sigmas()), 4);
-    EXPECT_LT(std::abs(stiffness.difference_in_sigmas()), 4);
-    EXPECT_EQ(proof_figures(all).size(), 2U);  // N and N m/rad
-
-    // Of other objectives it is no prediction.
-    std::string text = design_toml;
-    text.replace(text.find("at = { gap = \"5 mm\""), 19, "at = { gap = \"3 mm\"");
-    core::write_file(folder_.path() / "study.toml", text);
-    const auto other = proofs(open());
-    ASSERT_EQ(other.size(), 1U);
-    EXPECT_THAT(other[0].note, testing::HasSubstr("for other conditions, objectives or limits"));
-    EXPECT_TRUE(other[0].responses.empty());
-}
-
-/// The best may be a design that stands there already, but for rounding: it keeps its name and its numbers, so that the
-/// plan can be read again.
-TEST_F(DesignFiles, ABestThatIsPlannedKeepsItsNumbers) {
-    core::write_file(folder_.path() / "design" / "plan.csv",
-                     "design,protrusion.height [mm],body.base_cut [1],fidelity\nmine,1,0.7,coarse\n");
-    Design design = open();
-    tables::Candidate candidate;
-    candidate.at = {1e-3 * (1 + 1e-12), 0.7 * (1 - 1e-15)};
-    EXPECT_EQ(design.add_for_proof({candidate}), std::vector<std::string>{"mine"});
-    const Design again = open();
-    ASSERT_EQ(again.plan().size(), 2U);
-    EXPECT_EQ(again.plan()[1].fidelity, "medium");
-    EXPECT_EQ(again.plan()[1].at, again.plan()[0].at);
-}
-
-/// A body that touches the ground at a gap and pitch that [design] computes is no candidate, and that needs no run.
-TEST_F(DesignFiles, WhatTouchesTheGroundIsNoCandidate) {
-    const Design design = open();
-    const auto base = geometry::read_shape(design.spec().shape);
-    EXPECT_LT(broken_by(design.spec(), base, std::vector<double>{1e-3, 0.7}), 0);
-    EXPECT_GT(broken_by(design.spec(), base, std::vector<double>{2.9e-3, 0.7}), 0);  // at 3 mm and one degree
-    DesignSpec higher = design.spec();
-    higher.gaps = {6e-3};
-    EXPECT_LT(broken_by(higher, base, std::vector<double>{2.9e-3, 0.7}), 0);
-}
-
-/// What the runs of a design do not reach is not made up.
-TEST_F(DesignFiles, AResponseBeyondItsRunsIsNotComputed) {
-    Design design = open();
-    design.make_plan();
-    compute(design);
-    design = open();
-    tables::Response response{"lift at 4 mm", "lift_force", {{"gap", 4e-3}, {"pitch", 0}}, "", 0};
-    const std::string name = design.plan()[2].name;
-    const auto& at = design.plan()[2].at;
-    const auto between = computed_response(design, name, "coarse", response);
-    ASSERT_TRUE(between);
-    EXPECT_NEAR(between->value, 0.5 * (lift(at[0], at[1], 3e-3, 0) + lift(at[0], at[1], 5e-3, 0)), 2e-6);
-    EXPECT_FALSE(computed_response(design, name, "medium", response));
-    EXPECT_FALSE(computed_response(design, "design-099", "coarse", response));
-    response.conditions[0].value = 2e-3;
-    EXPECT_FALSE(computed_response(design, name, "coarse", response));
-    response.conditions[0].value = 3e-3;
-    response.slope_along = "pitch";
-    response.half_width = 2 * M_PI / 180;
-    EXPECT_FALSE(computed_response(design, name, "coarse", response));
-}
-
-/// A name that a person typed is not given again: two designs of one name could not be read.
-TEST_F(DesignFiles, NewNamesLeaveTypedOnesAlone) {
-    core::write_file(folder_.path() / "design" / "plan.csv",
-                     "design,protrusion.height [mm],body.base_cut [1]\ndesign-003,1,0.7\nmine,2,0.7\n");
-    Design design = open();
-    tables::Candidate candidate;
-    candidate.at = {1.5e-3, 0.8};
-    EXPECT_EQ(design.add({candidate}, "typed"), std::vector<std::string>{"design-004"});
-    EXPECT_EQ(open().plan().size(), 3U);
 }
 
 TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {

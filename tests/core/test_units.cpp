@@ -20,6 +20,18 @@ namespace {
 
 using testing::HasSubstr;
 
+TEST(Units, ADecimalCommaIsNamed) {
+    for (const auto& [text, right] : {std::pair("0,3", "0.3"), std::pair("-0,28 N", "-0.28 N")}) {
+        try {
+            (void)parse_in(text, "N");
+            ADD_FAILURE() << text << " was taken";
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.message(), "'" + std::string(text) + "' is a number with a decimal comma");
+            EXPECT_EQ(error.hint(), "write it with '.' as decimal point: " + std::string(right));
+        }
+    }
+}
+
 TEST(Units, SayWhatAUnitOfAnotherDimensionWasProbablyMeantFor) {
     const auto said = [](const char* text, const char* unit) {
         try {

@@ -187,6 +187,7 @@ TEST_F(PostprocCommands, ContentThatNoImporterReadsIsNamed) {
     EXPECT_THAT(hint("a.bin", std::string("\x01\x02\0\x03", 4)), testing::HasSubstr("known formats"));
     EXPECT_THAT(hint("ragged.out", "\"l\"\n\"Iteration\" \"l\"\n(\"Iteration\" \"l\")\n1 2\n2 3 4\n3 4\n"),
                 testing::HasSubstr("ragged.out:5: a row of 3 numbers where there are 2 columns"));
+    EXPECT_THAT(hint("b.bin", "\x01\r\x02 bytes of any kind\r\x05"), testing::HasSubstr("known formats"));
     std::string returns = box_csv;
     std::replace(returns.begin(), returns.end(), '\n', '\r');
     EXPECT_THAT(hint("mac.csv", returns), testing::HasSubstr("carriage returns alone"));

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the exports of `study run` say of their result (cases/step_tables.cpp), where the store holds it as it is.
+/// What the exports of `study run` say of their result, where the store holds it as it is.
 std::string origin_of(const Session& session, const cases::TableSpec& spec) {
     const std::string* known = session.results.document("table/" + spec.name);
     if (known == nullptr || session.results.store == nullptr) {
@@ -37,9 +37,7 @@ std::string origin_of(const Session& session, const cases::TableSpec& spec) {
     for (auto one = stored.rbegin(); one != stored.rend(); ++one) {
         const auto value = session.results.store->value(one->id);
         if (value && json::parse(*value) == document) {
-            const cases::Made made{one->kind, one->name, one->id, one->identity(), {}};
-            return "Result: table/" + spec.name + " " + made.id_for_files() +
-                   " (underbody study why STUDY FILE says what it is made of)";
+            return cases::Made{one->kind, one->name, one->id, one->identity(), {}}.origin_line();
         }
     }
     return {};

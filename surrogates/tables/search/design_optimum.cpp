@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/no_limit.h"
+#include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/search/design_search.h"
 #include "surrogates/tables/search/sampling.h"
 
@@ -339,7 +340,7 @@ std::string DesignSearch::unit_of(const Response& response) const {
     }
     for (const SearchVariable& v : bound.surrogate->variables()) {
         if (v.name == response.slope_along) {
-            return v.unit == "1" ? unit : unit + "/" + v.unit;
+            return v.unit == "1" ? unit : unit_per(unit, v.unit);
         }
     }
     return unit;

@@ -1,0 +1,128 @@
+// The dialog that exports a table for a controller: what it shows, writes, proves and refuses.
+// First, because Qt makes `signals` a keyword and the dynamics room has a member of that name.
+// clang-format off
+#include "surrogates/dynamics/basin/region.h"
+// clang-format on
+
+#include <gtest/gtest.h>
+
+#include <QLabel>
+#include <QLineEdit>
+#include <QTest>
+#include <algorithm>
+
+#include "core/file.h"
+#include "studio/desktop/export_dialog.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/plot_view.h"
+#include "studio/desktop/state/exports.h"
+#include "studio/desktop/state/words.h"
+#include "tests/studio/desktop/window_fixture.h"
+
+namespace underbody::studio {
+namespace {
+
+/// Typed by hand, per cent.
+void allow_error(ExportDialog& dialog, const QString& text) {
+    auto* edit = dialog.findChild<QLineEdit*>("largest error");
+    ASSERT_NE(edit, nullptr);
+    QTest::keyClicks(edit, text);
+}
+
+TEST_F(Window, AnExportIsShownProvedAndWritten) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+                                            table_of_study(window_->desk().session(), "lift"));
+    settle(*window_);
+    const QString study = QString::fromStdString(computed_study().string());
+    EXPECT_TRUE(dialog->command("lift.h").startsWith("underbody study run " + study + " && underbody export " + study +
+                                                     "/report/exports/lift.csv "))
+        << dialog->command("lift.h").toStdString();
+    EXPECT_TRUE(dialog->command("lift.h").contains("# with \"csv\" among the exports"))
+        << "the study writes no points yet";
+    EXPECT_TRUE(dialog->preview().contains("#ifndef")) << dialog->preview().left(300).toStdString();
+    EXPECT_FALSE(dialog->error()->isVisibleTo(dialog)) << "equal to the table";
+    allow_error(*dialog, "30");
+    settle(*window_);
+    ASSERT_TRUE(dialog->error()->isVisibleTo(dialog));
+    EXPECT_EQ(dialog->error()->figure().x.label, "gap");
+    dialog->prove();
+    settle(*window_);
+    EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();
+    dialog->write(folder_.path() / "lift.h");
+    EXPECT_EQ(core::read_file(folder_.path() / "lift.h").substr(0, 40), dialog->preview().toStdString().substr(0, 40));
+    delete dialog;
+}
+
+/// Carries out a line of commands that are joined by "&&".
+void carry_out(const QString& line) {
+    for (const auto& one : line.split(" && ")) {
+        Words words = words_of(one.toStdString());
+        ASSERT_EQ(words.front(), "underbody");
+        words.erase(words.begin());
+        const auto run = test::run_underbody(words);
+        EXPECT_EQ(run.exit_code, 0) << one.toStdString() << "\n" << run.errors;
+    }
+}
+
+// The command beside an export runs wherever the report went, and `study why` knows what the window writes.
+TEST_F(Window, AnExportOfAStudysTableIsTheStudys) {
+    const fs::path study = copy_of_study();
+    std::string text = core::read_file(study / "study.toml");
+    text.insert(text.find("net_weight"), "exports = [\"c\", \"csv\"]\n");
+    core::write_file(study / "study.toml", text);
+    fs::remove_all(study / "report");
+    const auto run = test::run_underbody({"study", "run", study.string(), "--no-pictures", "--report",
+                                          (folder_.path() / "elsewhere" / "index.html").string()});
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    open(study);
+    act("workspace tables");
+    settle(*window_);
+    const auto dialog_of = [&] {
+        return new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+                                table_of_study(window_->desk().session(), "lift"));
+    };
+    auto* dialog = dialog_of();
+    const QString by_command = QString::fromStdString((folder_.path() / "by_command.h").string());
+    const fs::path by_window = folder_.path() / "by_window.h";
+    EXPECT_TRUE(dialog->command(by_command).startsWith("underbody study run ")) << "its points stand elsewhere";
+    carry_out(dialog->command(by_command));
+    EXPECT_TRUE(fs::exists(by_command.toStdString()));
+    dialog->write(by_window);
+    delete dialog;
+    dialog = dialog_of();
+    EXPECT_TRUE(dialog->command(by_command).startsWith("underbody export ")) << "they are there now";
+    delete dialog;
+    EXPECT_EQ(core::read_file(by_window), core::read_file(study / "report" / "exports" / "lift.h"));
+    const auto why = test::run_underbody({"study", "why", study.string(), by_window.string()});
+    EXPECT_EQ(why.exit_code, 0) << why.errors;
+    EXPECT_EQ(why.output.find("differs"), std::string::npos) << why.output;
+    core::write_file(study / "report" / "exports" / "lift.csv", "points of another run");
+    EXPECT_FALSE(table_of_study(window_->desk().session(), "lift").first.empty()) << "not those of the table as it is";
+}
+
+// What is wrong stands in the dialog (it stood behind it), and says what a number is written with.
+TEST_F(Window, TheExportDialogSaysWhatIsWrong) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    auto* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get());
+    settle(*window_);
+    allow_error(*dialog, "0,5");
+    settle(*window_);
+    const auto labels = dialog->findChildren<QLabel*>();
+    EXPECT_TRUE(std::any_of(labels.begin(), labels.end(),
+                            [](const QLabel* label) { return label->text().contains("decimal point: 0.5"); }));
+    dialog->prove();
+    EXPECT_TRUE(dialog->proof().startsWith("Not proved")) << dialog->proof().toStdString();
+    dialog->write_to(QString::fromStdString((folder_.path() / "lift.h").string()));
+    EXPECT_TRUE(dialog->proof().startsWith("Not written")) << dialog->proof().toStdString();
+    EXPECT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
+    delete dialog;
+}
+
+}  // namespace
+}  // namespace underbody::studio
