@@ -185,16 +185,14 @@ void check_protrusion(const BodyShape& shape, const Checker& checker) {
                        : 0.4 * std::hypot(p.length / 2, p.height) / std::tan(std::atan2(p.height, p.length / 2) / 2),
                    "a blend for which the flank has room");
     const double foot = protrusion_foot_radius(p);
-    const std::vector<OutlinePoint> outline = flat_base_outline(without_additions(shape));
+    const InsideDistance inside(flat_base_outline(without_additions(shape)));
     const double margin = 0.02 * extent.half_width;
-    const auto fits = [&](double fraction) {
-        return inside_distance(outline, extent.nose - fraction * base_length, 0) >= foot + margin;
-    };
+    const auto fits = [&](double fraction) { return inside(extent.nose - fraction * base_length, 0) >= foot + margin; };
     if (!(p.position >= 0 && p.position <= 1) || !fits(p.position)) {
         double nearest = 0.5, best = 1e9;
         for (int i = 0; i <= 10000; ++i) {
             const double fraction = i / 10000.0;
-            if (fits(fraction) && std::abs(fraction - p.position) < best) {
+            if (std::abs(fraction - p.position) < best && fits(fraction)) {
                 best = std::abs(fraction - p.position);
                 nearest = fraction;
             }
@@ -219,7 +217,7 @@ void check_nozzle(const BodyShape& shape, const Checker& checker) {
     const Nozzle& n = *shape.nozzle;
     const BodyShape::BaseExtent extent = shape.base_extent();
     const double base_length = extent.nose - extent.tail, radius = n.diameter / 2;
-    const std::vector<OutlinePoint> outline = flat_base_outline(without_additions(shape));
+    const InsideDistance inside(flat_base_outline(without_additions(shape)));
     const double margin = 0.02 * extent.half_width;
     checker.number("nozzle", "position", n.position, 0, 1, "along the base from its nose end");
     checker.length("nozzle", "depth", n.depth, 0, 0.9 * shape.base_depth(), "the bore ends inside the body");
@@ -227,7 +225,7 @@ void check_nozzle(const BodyShape& shape, const Checker& checker) {
     const double foot = shape.protrusion ? protrusion_foot_radius(*shape.protrusion) + margin : 0;
     // Largest radius at a place: up to the edge of the flat base and to the foot of the protrusion.
     const auto room = [&](double fraction) {
-        const double edge = inside_distance(outline, extent.nose - fraction * base_length, 0) - margin;
+        const double edge = inside(extent.nose - fraction * base_length, 0) - margin;
         return shape.protrusion ? std::min(edge, std::abs(fraction - axis) * base_length - foot) : edge;
     };
     checker.length("nozzle", "diameter", n.diameter, 1e-3 * base_length, base_length,
@@ -282,14 +280,21 @@ std::vector<OutlinePoint> flat_base_outline(const BodyShape& shape, std::size_t 
     return outline;
 }
 
-double inside_distance(const std::vector<OutlinePoint>& outline, double x, double y) {
-    double nearest = core::no_limit;
+InsideDistance::InsideDistance(const std::vector<OutlinePoint>& outline) {
     for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
         const OutlinePoint &a = outline[i], &b = outline[i + 1];
         const double ex = b.x - a.x, ey = b.y - a.y, length = std::hypot(ex, ey);
-        if (length > 1e-9) {  // the outline runs from the nose over port to the tail: inside is on its left
-            nearest = std::min(nearest, (ex * (y - a.y) - ey * (x - a.x)) / length);
+        if (length > 1e-9) {
+            edges_.push_back({a, ex, ey, length});
         }
+    }
+}
+
+double InsideDistance::operator()(double x, double y) const {
+    double nearest = core::no_limit;
+    for (const Edge& edge : edges_) {  // from the nose over port to the tail: inside is on their left
+        nearest =
+            std::min(nearest, (edge.along_x * (y - edge.from.y) - edge.along_y * (x - edge.from.x)) / edge.length);
     }
     return nearest;
 }
@@ -313,13 +318,13 @@ double protrusion_width(const BodyShape& shape) {
     if (shape.protrusion->width) {
         return *shape.protrusion->width;
     }
-    const std::vector<OutlinePoint> outline = flat_base_outline(without_additions(shape));
+    const InsideDistance inside(flat_base_outline(without_additions(shape)));
     const double foot = protrusion_foot_radius(*shape.protrusion), half_width = shape.base_extent().half_width;
     const double x = shape.base_x(shape.protrusion->position), margin = 0.02 * half_width;
     double low = 0, high = half_width;
     for (int i = 0; i < 60; ++i) {
         const double mid = 0.5 * (low + high);
-        (inside_distance(outline, x, mid) >= foot + margin ? low : high) = mid;
+        (inside(x, mid) >= foot + margin ? low : high) = mid;
     }
     return 2 * (low + foot);
 }

@@ -14,9 +14,20 @@ struct OutlinePoint {
 };
 std::vector<OutlinePoint> flat_base_outline(const BodyShape& shape, std::size_t points = 400);
 
-/// Distance from a point (y >= 0) inside the port half of a convex outline and its mirror image to its nearest edge;
+/// Distance from points (y >= 0) inside the port half of a convex outline and its mirror image to its nearest edge;
 /// negative outside.
-double inside_distance(const std::vector<OutlinePoint>& outline, double x, double y);
+class InsideDistance {
+public:
+    explicit InsideDistance(const std::vector<OutlinePoint>& outline);
+    [[nodiscard]] double operator()(double x, double y) const;
+
+private:
+    struct Edge {
+        OutlinePoint from;
+        double along_x = 0, along_y = 0, length = 0;
+    };
+    std::vector<Edge> edges_;  ///< those that have a length
+};
 
 /// Radius of the foot of the protrusion's profile: half its length and what the blend adds.
 double protrusion_foot_radius(const Protrusion& protrusion);
