@@ -16,7 +16,7 @@ set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL QUIET REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonTransforms CommonSystem
-  FiltersCore FiltersGeneral FiltersGeometry FiltersSources FiltersExtraction FiltersModeling FiltersFlowPaths FiltersVerdict
+  FiltersCore FiltersGeneral FiltersHybrid FiltersGeometry FiltersSources FiltersExtraction FiltersModeling FiltersFlowPaths FiltersVerdict
   IOCore IOXML IOLegacy IOGeometry IOEnSight IOCGNSReader IOImage IOParallel
   ImagingCore InteractionStyle InteractionWidgets RenderingAnnotation RenderingCore RenderingFreeType
   RenderingOpenGL2 RenderingContextOpenGL2 GUISupportQt)

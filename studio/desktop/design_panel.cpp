@@ -62,6 +62,7 @@ void DesignPanel::build() {
     body->setMinimumSize(200, 160);
     section_ = new PlotView(this);
     body_cell_ = new ViewCell(*this, "body", "Body", body);
+    build_view_tools();
     section_cell_ = new ViewCell(*this, "section", "Section", section_);
     upper_->addWidget(body_cell_);
     upper_->addWidget(section_cell_);
@@ -104,6 +105,7 @@ void DesignPanel::make_scene() {
     scene_->widget()->installEventFilter(this);
     scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
     body_place_->addWidget(scene_->widget());
+    keep_turns();
 }
 
 void DesignPanel::build_side(QVBoxLayout& side) {
@@ -408,12 +410,18 @@ void DesignPanel::draw_again(bool fresh) {
             rest_->stop();
             show_body(known);
         } else {
+            jobs_.cancel("design rest");  // of a body before: it would keep the next one waiting
+            if (jobs_.busy("design ranges")) {
+                jobs_.cancel("design ranges");
+                ranges_of_.clear();  // asked for again at rest
+            }
             ask_move();
             rest_->start();
         }
     } else {
         show_card();
         draw_section();
+        show_view();
     }
     show_lift();
 }
@@ -506,13 +514,14 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
     }
     if (scene_) {
         scene_->set_ground(palette().base().color().lightness() < 128);
+        scene_->set_moving(!body->certificate);
         scene_->show(body->drawn, first);
         scene_->colour_by({}, {0, 1});
         if (!fitted_view_ && !turned_) {  // the first ones come while the window still gives everything its place
             fit_view();
             fitted_view_ = body->certificate.has_value();
         }
-        scene_->render();
+        show_view();
     }
     draw_section();
     show_card();

@@ -88,6 +88,9 @@ private:
     void take(const std::shared_ptr<const LiveBody>& body, const std::string& key);
     void show_body(const std::shared_ptr<const LiveBody>& body);
     void fit_view();
+    void build_view_tools();
+    void keep_turns();
+    void show_view();
     void draw_section();
     void show_card();
     [[nodiscard]] std::vector<std::array<QString, 2>> lift_rows() const;
@@ -139,8 +142,11 @@ private:
 
     std::unique_ptr<Scene> scene_;  ///< none before the first body
     QVBoxLayout* body_place_ = nullptr;
-    bool fitted_view_ = false;  ///< to a whole body
-    bool turned_ = false;       ///< by hand: the camera is not fitted any more
+    bool fitted_view_ = false;           ///< to a whole body
+    bool turned_ = false;                ///< by hand: the camera is not fitted any more
+    std::optional<ViewPose> seen_from_;  ///< what of the state the view shows
+    QToolButton* outline_ = nullptr;
+    QToolButton* fit_ = nullptr;
     QComboBox* choice_ = nullptr;
     struct Group {
         std::string part;

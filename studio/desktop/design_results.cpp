@@ -161,6 +161,7 @@ void DesignPanel::make_before() {
                         before_ = body;
                         show_card();
                         draw_section();
+                        show_view();
                     };
                 },
                 true);

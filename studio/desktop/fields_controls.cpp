@@ -122,11 +122,11 @@ void FieldsPanel::add_cameras(QBoxLayout& left) {
         views->addWidget(button, place / 2, place % 2);
         ++place;
         const auto act = [this, v = view] {
-            camera_.clear();  // also back to it after turning by hand
-            if (state().fields.camera == v) {
-                look_from(v);
+            if (state().fields.camera == v && !state().fields.turned) {
+                camera_.clear();  // the window may have another size
+                recolour();
             }
-            desk_.act({"fields", "camera=" + v});
+            desk_.act({"fields", "camera=" + v});  // also back to it after turning by hand
         };
         connect(button, &QPushButton::clicked, this, act);
         auto* shortcut = new QShortcut(QKeySequence(key), this);

@@ -24,6 +24,7 @@
 #include "studio/desktop/fitted_picture.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/rolled.h"
+#include "studio/desktop/state/action_parts.h"
 #include "studio/figures/render.h"
 
 namespace underbody::studio {
@@ -122,6 +123,7 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
                 }
             }
         };
+        cell->scene->on_turned = [this](const Scene::Pose& pose) { keep_turn(pose); };
         if (!cells_.empty()) {
             cell->scene->share_camera(*cells_.front()->scene);
         }
@@ -148,6 +150,9 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
 }
 
 void FieldsPanel::draw_again(bool) {
+    if (by_hand_) {
+        return;
+    }
     auto sources = wanted();
     shared_ = title_by_difference(sources);
     stack_->setCurrentIndex(sources.empty() ? 0 : 1);
@@ -277,7 +282,7 @@ void FieldsPanel::recolour() {
     check_names();
     offer_half();
     show_probe();
-    look_from(state().fields.camera);
+    look();
     for (const auto& cell : cells_) {
         if (cell->ready) {
             cell->scene->render();
@@ -286,10 +291,26 @@ void FieldsPanel::recolour() {
     show_pictures();
 }
 
-void FieldsPanel::look_from(const std::string& camera) {
+namespace {
+std::string seen_from(const FieldView& view) {
+    return view.turned ? view.camera + " " + text_of(*view.turned) : view.camera;
+}
+}  // namespace
+
+void FieldsPanel::keep_turn(const Scene::Pose& pose) {
+    FieldView turned = state().fields;
+    turned.turned = action::pose_from(text_of(pose));
+    camera_ = seen_from(turned);
+    by_hand_ = true;
+    desk_.act({"turn", "compare", text_of(pose)});
+    by_hand_ = false;
+}
+
+void FieldsPanel::look() {
     Cell* cell = first_ready();
-    if (cell != nullptr && camera != camera_) {
-        camera_ = camera;
+    const FieldView& view = state().fields;
+    if (cell != nullptr && seen_from(view) != camera_) {
+        camera_ = seen_from(view);
         std::optional<std::array<double, 6>> box;  // around the bodies of all cells: they have one camera
         for (const auto& one : cells_) {
             const auto own = one->ready ? one->scene->bounds() : std::nullopt;
@@ -299,8 +320,11 @@ void FieldsPanel::look_from(const std::string& camera) {
             }
             box = box ? box : own;
         }
-        cell->scene->look_from(camera, session().folder.empty() ? "+x" : session().study.forward,
+        cell->scene->look_from(view.camera, session().folder.empty() ? "+x" : session().study.forward,
                                session().folder.empty() ? "+z" : session().study.up, box);
+        if (view.turned) {
+            cell->scene->set_pose(*view.turned);
+        }
     }
 }
 
@@ -327,7 +351,11 @@ Sheet FieldsPanel::sheet() const {
     const std::map<std::string, QString> seen = {
         {"bottom", "from below"}, {"top", "from above"}, {"side", "from the side"}, {"front", "from ahead"}};
     const auto camera = seen.find(state().fields.camera);
-    sheet.about += "seen " + (camera == seen.end() ? QString("obliquely from below") : camera->second) + "; colours " +
+    sheet.about += "seen " +
+                   (state().fields.turned  ? QString("as turned by hand")
+                    : camera == seen.end() ? QString("obliquely from below")
+                                           : camera->second) +
+                   "; colours " +
                    (state().fields.range         ? "on a range that was given"
                     : state().fields.whole_range ? "over the whole range"
                                                  : "from the 1st to the 99th hundredth of what is seen") +

@@ -135,7 +135,9 @@ private:
     void picked(std::size_t cell, const Scene::Picked& found);
     void check_names();
     void recolour();
-    void look_from(const std::string& camera);
+    /// As the state says, where it is not so already.
+    void look();
+    void keep_turn(const Scene::Pose& pose);
     void not_read(std::size_t cell, const QString& why);
     void ask_units();
     void show_pictures();
@@ -147,8 +149,9 @@ private:
     [[nodiscard]] Cell* first_ready() const;
 
     std::vector<std::unique_ptr<Cell>> cells_;
-    std::string camera_;  ///< that the cells are seen from
-    FieldView checked_;   ///< whose names of arrays and zones were looked for in the files
+    std::string camera_;    ///< that the cells are seen from, or as they are turned
+    bool by_hand_ = false;  ///< what is drawn was turned by hand: the state follows it, not it the state
+    FieldView checked_;     ///< whose names of arrays and zones were looked for in the files
     QGridLayout* grid_ = nullptr;
     QStackedLayout* stack_ = nullptr;
     QWidget* fields_ = nullptr;

@@ -140,7 +140,8 @@ int run(int argc, char** argv) {
     if (!options.log.empty() && options.screenshots.empty()) {
         return replay_without_window(options);
     }
-    ::mallopt(M_ARENA_MAX, 2);  // of its own for every thread each would keep what it once held
+    ::mallopt(M_ARENA_MAX, 2);                // of its own for every thread each would keep what it once held
+    ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);  // what is large goes back at once, however large others were
     const auto display = need_display(options);
     if (!options.screenshots.empty()) {
         ::setenv("QT_QPA_PLATFORM", "xcb", 1);  // 3D needs an X server, also where tests ask for `offscreen`

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "studio/figures/render.h"
+#include "studio/figures/same_figure.h"
 
 namespace underbody::studio {
 
@@ -148,6 +149,10 @@ void PlotView::say_place(double x, double y) {
 
 void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     const bool keep = keep_zoom && zoomed_ && shown_;
+    if (shown_ && keep == zoomed_ && drawn_in_ == palette().cacheKey() && same_figure(figure, figure_)) {
+        return;
+    }
+    drawn_in_ = palette().cacheKey();
     const QCPRange x = keep ? plot_->xAxis->range() : QCPRange();
     const QCPRange y = keep ? plot_->yAxis->range() : QCPRange();
     figure_ = figure;

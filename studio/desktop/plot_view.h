@@ -55,6 +55,7 @@ private:
     core::Figure figure_;
     QString sentence_;
     bool shown_ = false;
+    qint64 drawn_in_ = 0;  ///< the colours of the window that it was drawn in
     bool zoomed_ = false;
     QPoint pressed_;
     QPointF mark_{0.5, 0.5};  ///< share of the axes' box, from its lower left corner

@@ -22,8 +22,13 @@ namespace underbody::studio {
 
 class Scene {
 public:
+    /// From where (x, y, z, m), at what (m), what is up, and half the height that is seen (m, without perspective).
+    using Pose = std::array<double, 10>;
+
     /// True when this machine can make an OpenGL context (asked once; VTK would abort without one).
     static bool possible();
+    /// True where the processor draws, which takes four times as long for four samples a pixel.
+    static bool by_software();
 
     explicit Scene(QWidget* parent);
     ~Scene();
@@ -74,6 +79,13 @@ public:
     /// "bottom", "top", "side", "front", "iso" in the frame of the file.
     void look_from(const std::string& view, const std::string& forward, const std::string& up,
                    const std::optional<std::array<double, 6>>& box = {});
+    [[nodiscard]] Pose pose() const;
+    /// In the projection of the last `look_from`.
+    void set_pose(const Pose& pose);
+    /// What is shown follows a hand: a software renderer then takes less care of edges.
+    void set_moving(bool moving);
+    /// Another body as a line around it, in front of everything; nullptr: none. Only drawn, never picked or fitted to.
+    void outline(const std::shared_ptr<const Prepared>& other);
     /// Of what is drawn (x from, to, y, z), empty when that is nothing.
     [[nodiscard]] std::optional<std::array<double, 6>> bounds() const;
 
@@ -95,6 +107,8 @@ public:
     void tint(const std::vector<bool>& body);
     /// Called while the view is turned by hand, so that those with the same camera follow.
     std::function<void()> on_turn;
+    /// Called once the hand that turned it, or its wheel, rests.
+    std::function<void(const Pose&)> on_turned;
 
     /// Of many faces a stand-in is turned; true while it is what is seen, until the picture of all of them is drawn.
     [[nodiscard]] bool stands_in() const;

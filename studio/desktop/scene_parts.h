@@ -3,6 +3,7 @@
 
 #include <QVTKOpenGLNativeWidget.h>
 #include <vtkActor.h>
+#include <vtkAppendPolyData.h>
 #include <vtkAxesActor.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellPicker.h>
@@ -12,6 +13,7 @@
 #include <vtkNew.h>
 #include <vtkOrientationMarkerWidget.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkPolyDataSilhouette.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
 #include <vtkSmartPointer.h>
@@ -28,6 +30,8 @@
 #include "studio/desktop/whole_picture.h"
 
 namespace underbody::studio {
+
+constexpr int samples_at_rest = 4;  ///< a pixel
 
 struct Scene::Prepared {
     std::shared_ptr<const postproc::Field> field;
@@ -90,8 +94,14 @@ struct Scene::Parts : QObject {
     postproc::MirrorPlane mirror;  ///< of the prepared sides
     Scene* scene = nullptr;
     vtkNew<vtkCallbackCommand> on_turn, on_hold;
-    QTimer hover;
+    QTimer hover, turned;
+    Pose held{};  ///< as it was when a hand took hold of it
+    void follow_hand();
     QPoint pressed;
+    vtkNew<vtkAppendPolyData> other;  ///< all of another body
+    vtkNew<vtkPolyDataSilhouette> rim;
+    vtkNew<vtkActor> rim_actor;
+    std::shared_ptr<const Prepared> outlined;
     std::vector<bool> tinted;
     vtkNew<vtkSphereSource> dot;
     vtkNew<vtkActor> dot_actor;
@@ -107,6 +117,8 @@ struct Scene::Parts : QObject {
     void dress_bar();
     void dress_axes();
     void dress_dot();
+    void dress_rim();
+    Surface new_surface();
     void size_marker();
     void size_bar();
     std::string bar_label, bar_unit;  ///< of what is coloured

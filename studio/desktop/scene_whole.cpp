@@ -21,6 +21,7 @@ WholePicture::Wanted Scene::Parts::wanted_whole() const {
     const int* size = window->GetSize();
     wanted.width = size[0];
     wanted.height = size[1];
+    wanted.by_software = Scene::by_software();
     for (const auto& surface : surfaces) {
         if (!visible(surface)) {
             continue;
@@ -52,11 +53,16 @@ void Scene::Parts::choose_drawn() {
     if (!whole) {
         return;
     }
-    const bool drawn = !whole_of.empty() && whole_of == wanted_whole().key();
+    const std::string key = wanted_whole().key();
+    const bool drawn = !whole_of.empty() && whole_of == key;
     renderer->SetTexturedBackground(drawn);
     show_actors(!drawn);
     if (!drawn) {
         rest.start();
+    }
+    if (asked_of != key) {  // another view by now
+        whole->give_up();
+        asked_of.clear();
     }
 }
 

@@ -37,6 +37,12 @@ public:
         column->addWidget(view, 1);
     }
     void set_title(const QString& title) { title_->setText(title); }
+    /// Beside the title.
+    void add_tool(QToolButton* tool) {
+        tool->setAutoRaise(true);
+        tool->setFocusPolicy(Qt::TabFocus);
+        static_cast<QBoxLayout*>(head_->layout())->insertWidget(head_->layout()->count() - 1, tool);
+    }
     void show_head(bool shown) { head_->setVisible(shown); }
     /// Called after it has come to be seen.
     std::function<void()> on_show;

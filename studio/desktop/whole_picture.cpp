@@ -1,18 +1,20 @@
 #include "studio/desktop/whole_picture.h"
 
+#include <malloc.h>
 #include <vtkActor.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkShaderProperty.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <QtConcurrent>
+#include <algorithm>
 #include <sstream>
 
 #include "core/virtual_display.h"
+#include "studio/desktop/sliced_mapper.h"
 
 namespace underbody::studio {
 
@@ -69,17 +71,19 @@ std::string WholePicture::Wanted::key() const {
 /// Keeps what it drew: from another side only the picture is new, not what the surfaces are made of.
 class WholePicture::Painter {
 public:
-    vtkSmartPointer<vtkImageData> paint(const Wanted& wanted) {
+    /// nullptr where there is none, or it was given up.
+    vtkSmartPointer<vtkImageData> paint(const Wanted& wanted, const std::function<bool()>& given_up) {
         if (!window_) {
             window_ = vtkSmartPointer<vtkRenderWindow>::New();
             window_->SetOffScreenRendering(1);
-            window_->SetMultiSamples(4);
             window_->AddRenderer(renderer_);
             renderer_->GradientBackgroundOn();
         }
         if (window_->SupportsOpenGL() == 0) {
             return nullptr;
         }
+        window_->SetMultiSamples(wanted.by_software ? 0 : 4);
+        renderer_->SetUseFXAA(wanted.by_software);
         window_->SetSize(wanted.width, wanted.height);
         auto below = wanted.ground, above = wanted.ground_above;
         renderer_->SetBackground(below.data());
@@ -89,13 +93,25 @@ public:
         for (const auto& surface : wanted.surfaces) {
             drawn.push_back(of(surface, wanted.colours, drawn));
         }
-        renderer_->RemoveAllViewProps();
+        // Only what is no longer wanted is taken out: VTK gives up all that the renderer holds of an actor with it.
+        const auto has = [](const std::vector<Drawn>& all, const Drawn& one) {
+            return std::any_of(all.begin(), all.end(), [&](const Drawn& other) { return other.actor == one.actor; });
+        };
+        for (const auto& one : drawn_) {
+            if (!has(drawn, one)) {
+                renderer_->RemoveActor(one.actor);
+            }
+        }
         for (const auto& one : drawn) {
-            renderer_->AddActor(one.actor);
+            static_cast<SlicedMapper*>(one.actor->GetMapper())->given_up = given_up;
+            renderer_->AddActor(one.actor);  // which it is once, however often it is added
         }
         drawn_ = std::move(drawn);
         renderer_->ResetCameraClippingRange();
         window_->Render();
+        if (given_up()) {
+            return nullptr;
+        }
         auto image = vtkSmartPointer<vtkImageData>::New();
         vtkNew<vtkUnsignedCharArray> pixels;
         window_->GetPixelData(0, 0, wanted.width - 1, wanted.height - 1, 0, pixels);
@@ -137,7 +153,7 @@ private:
             // Of its own: what VTK notes in a surface that it draws, it does not note in one that is clicked on.
             vtkNew<vtkPolyData> own;
             own->ShallowCopy(surface.faces);
-            vtkNew<vtkPolyDataMapper> mapper;
+            vtkNew<SlicedMapper> mapper;
             mapper->SetInputData(own);
             mapper->UseLookupTableScalarRangeOn();
             mapper->InterpolateScalarsBeforeMappingOn();
@@ -176,10 +192,11 @@ void WholePicture::ask(const Wanted& wanted, std::function<void(vtkSmartPointer<
     ++busy_;
     QtConcurrent::run(&thread_, [this, mine, wanted, done = std::move(done), newest = newest_, painter = painter_] {
         vtkSmartPointer<vtkImageData> image;
-        const bool wanted_still = *newest == mine;
-        if (wanted_still && core::display_answers()) {
-            image = painter->paint(wanted);
+        const auto given_up = [newest, mine] { return *newest != mine; };
+        if (!given_up() && core::display_answers()) {
+            image = painter->paint(wanted, given_up);
         }
+        const bool wanted_still = !given_up();
         QMetaObject::invokeMethod(
             this,
             [this, image, done, wanted_still] {
@@ -189,6 +206,9 @@ void WholePicture::ask(const Wanted& wanted, std::function<void(vtkSmartPointer<
                 }
             },
             Qt::QueuedConnection);
+        if (image != nullptr) {
+            ::malloc_trim(0);  // a software renderer sorts all faces into small pieces of memory, which are free now
+        }
     });
 }
 

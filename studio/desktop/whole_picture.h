@@ -42,6 +42,7 @@ public:
         vtkSmartPointer<vtkLookupTable> colours;
         std::array<double, 3> ground{}, ground_above{};
         int width = 0, height = 0;
+        bool by_software = false;  ///< one sample a pixel, its edges smoothed in the picture
 
         /// The same for pictures that are the same.
         [[nodiscard]] std::string key() const;
@@ -53,6 +54,8 @@ public:
     /// Draws it unless something else is asked for until its turn comes; `done` is called on the window's thread, with
     /// nullptr where this display cannot draw beside a window.
     void ask(const Wanted& wanted, std::function<void(vtkSmartPointer<vtkImageData>)> done);
+    /// Nothing that was asked for is wanted any more: what is being drawn is given up at its next slice.
+    void give_up() { *newest_ = ++asked_; }
     /// Being drawn, or about to.
     [[nodiscard]] bool busy() const { return busy_ > 0; }
 

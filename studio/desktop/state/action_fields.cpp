@@ -151,6 +151,7 @@ State look_at_fields(State state, const Words& words, const Session&) {
                 unknown_key(text, known);
             }
             view.camera = text;
+            view.turned.reset();
         } else if (key.starts_with("zone.")) {
             view.zones[key.substr(5)] = yes_or_no(text);
         } else {

@@ -306,6 +306,9 @@ std::string name_of(const Words& words) {
     if (verb == "vary") {
         return first.empty() ? "vary nothing" : "vary " + key_of(first) + more;
     }
+    if (verb == "turn") {
+        return "turn the view of " + first;
+    }
     if (verb == "pin") {
         return "compare with this";
     }
@@ -317,6 +320,8 @@ std::string merge_key(const Words& words) {
     std::string key = kind.verb;
     if (kind.verb == "set" || kind.verb == "operation") {
         key += words.size() > 1 ? " " + key_of(words[1]) : "";
+    } else if (kind.verb == "turn") {
+        key += words.size() > 1 ? " " + words[1] : "";
     } else if (kind.verb == "table" || kind.verb == "region") {
         key += words.size() > 2 ? " " + words[1] + " " + key_of(words[2]) : "";
     }

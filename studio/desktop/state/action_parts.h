@@ -27,6 +27,11 @@ std::array<double, 2> range_of(const std::string& text, const char* unit);
 /// The shape that Design shows. Throws core::UsageError when there is none.
 std::string need_shape(const State& state, const Session& session);
 
+/// "X,Y,Z/X,Y,Z/X,Y,Z/HEIGHT" as ViewPose; empty: none. Throws core::Error: no such, or nothing could be seen from it.
+std::optional<ViewPose> pose_from(const std::string& text);
+
+State turn(State state, const Words& words, const Session& session);
+State outline(State state, const Words& words, const Session& session);
 State look_at_fields(State state, const Words& words, const Session& session);
 State read_as(State state, const Words& words, const Session& session);
 State measure(State state, const Words& words, const Session& session);

@@ -124,6 +124,7 @@ State show_workspace(State state, const Words& words, const Session&) {
 
 State select(State state, const Words& words, const Session& session) {
     need_things(state, session, words);
+    const auto outside = state.selected("field");
     state.selection.clear();
     std::map<std::string, std::vector<std::string>> kinds;
     for (const auto& id : words) {
@@ -138,6 +139,11 @@ State select(State state, const Words& words, const Session& session) {
     }
     if (kinds.contains("shape")) {
         state.design.shape = kinds["shape"].front();
+    }
+    const auto& now = kinds["field"];
+    if (now.empty() != outside.empty() ||
+        (!now.empty() && std::find_first_of(now.begin(), now.end(), outside.begin(), outside.end()) == now.end())) {
+        state.fields.turned.reset();  // other files from outside may be of any size
     }
     return state;
 }
@@ -348,6 +354,10 @@ const std::vector<ActionKind>& action_kinds() {
          "read body.csv length_unit=mm unit.Pressure=Pa symmetry=y density=998kg/m^3", false, action::read_as},
         {"fields", "KEY=VALUE ...", "sets how fields are looked at", "fields array=pressure camera=bottom", true,
          action::look_at_fields},
+        {"turn", "design|compare [FROM/AT/UP/HEIGHT]", "turns a 3D view as a hand did; no place: as it was before",
+         "turn design 0.3,0.2,-0.1/0,0,0/0,0,1/0.05", true, action::turn},
+        {"outline", "on|off", "draws the body before as a line around the one of now", "outline off", true,
+         action::outline},
         {"table", "NAME KEY=VALUE ...", "sets numbers and view of a force table", "table lift net_weight=0.28N", false,
          action::look_at_table},
         {"region", "NAME KEY=VALUE ...", "changes numbers and view of a stability map", "region glide cells=100", false,

@@ -27,6 +27,9 @@ const ActionKind& kind_of(const Words& words);
 /// parse or cannot be (a shape that cannot be made: the sentence of geometry::check).
 State applied(const State& state, const Words& words, const Session& session);
 
+/// As `turn` takes it.
+std::string text_of(const ViewPose& pose);
+
 /// "Set protrusion.height to 2 mm": for the history.
 std::string name_of(const Words& words);
 

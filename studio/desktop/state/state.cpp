@@ -167,6 +167,8 @@ void fields(auto& v, const DesignView& /*kind*/, const auto& field) {
     field("before", v.before);
     field("before_shape", v.before_shape);
     field("map", v.map);
+    field("outline", v.outline);
+    field("turned", v.turned);
 }
 
 void fields(auto& v, const FieldView& /*kind*/, const auto& field) {
@@ -180,6 +182,7 @@ void fields(auto& v, const FieldView& /*kind*/, const auto& field) {
     field("view", v.view);
     field("time", v.time);
     field("probe", v.probe);
+    field("turned", v.turned);
     field("zones", v.zones);
 }
 

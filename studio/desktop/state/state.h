@@ -69,6 +69,10 @@ struct FileReading {
     bool operator==(const FileReading&) const = default;
 };
 
+/// A 3D view as a hand turned it: from where (x, y, z, m), at what (m), what is up, half the height that is seen (m;
+/// counts without perspective), in the axes of the file or shape.
+using ViewPose = std::array<double, 10>;
+
 /// How fields are looked at: one array, range, camera and set of zones for all cells.
 struct FieldView {
     std::string array = "pressure";
@@ -80,6 +84,7 @@ struct FieldView {
     std::string view = "surface";                ///< or a picture of postproc::view_kinds: planes, streamlines
     std::optional<double> time;                  ///< s, of files with several; none: the last
     std::string camera = "iso";                  ///< "bottom", "top", "side", "front", "iso"
+    std::optional<ViewPose> turned;              ///< by hand; none: from `camera`, all of it
     std::map<std::string, bool> zones;           ///< ticked by hand
     std::optional<std::array<double, 3>> probe;  ///< m, file axes: where values are read off
     bool operator==(const FieldView&) const = default;
@@ -105,7 +110,9 @@ struct DesignView {
     std::map<std::string, KeptVariant> variants;
     ShapeChanges before;  ///< what the results are compared with, of `before_shape`
     std::string before_shape;
-    bool map = false;  ///< the stability map is in front of the lift, where there is room for one of them
+    bool map = false;                ///< the stability map is in front of the lift, where there is room for one of them
+    bool outline = true;             ///< of the body before, around the one of now
+    std::optional<ViewPose> turned;  ///< by hand; none: obliquely from below, all of it
     bool operator==(const DesignView&) const = default;
 };
 

@@ -14,6 +14,7 @@
 #include "core/random.h"
 #include "studio/figures/colour_scale.h"
 #include "studio/figures/render.h"
+#include "studio/figures/same_figure.h"
 #include "tests/support/support.h"
 
 namespace underbody::studio {
@@ -427,6 +428,45 @@ TEST(Figures, APictureIsDrawnFastEnoughForAReport) {
     const double seconds = test::processor_seconds() - start;
     RecordProperty("seconds", std::to_string(seconds));
     EXPECT_LT(seconds, 1.5);
+}
+
+// A plot whose figure stays the same is not drawn again: every part tells two figures apart.
+TEST(SameFigure, KnowsEveryPart) {
+    using core::Figure;
+    Figure figure;
+    figure.title = "lift";
+    figure.curves.push_back({"a", {1, 2}, {3, 4}, {1, 2, 3}, 2, false, false});
+    figure.bands.push_back({"b", {1, 2}, {0, 0}, {1, 1}});
+    figure.points.push_back({"c", {1}, {2}, {}, {}});
+    figure.lines.push_back({true, 1, "gap"});
+    figure.notes.push_back({1, 2, "here"});
+    figure.classes.push_back({1, 1, 0, 1, 0, 1, {0}, {"held"}, {{9, 9, 9}}});
+    figure.maps.push_back({1, 1, 0, 1, 0, 1, {5}});
+    figure.arrows.push_back({{1}, {1}, {1}, {1}});
+    figure.bars.push_back({"d", {"x"}, {1}, {0}});
+    EXPECT_TRUE(same_figure(figure, Figure(figure)));
+    const std::vector<void (*)(Figure&)> changes = {[](Figure& f) { f.title = "drag"; },
+                                                    [](Figure& f) { f.x.upper = 1; },
+                                                    [](Figure& f) { f.y.logarithmic = true; },
+                                                    [](Figure& f) { f.curves[0].y[1] = 5; },
+                                                    [](Figure& f) { f.curves[0].colour.red = 0; },
+                                                    [](Figure& f) { f.curves.push_back(f.curves[0]); },
+                                                    [](Figure& f) { f.bands[0].upper[0] = 2; },
+                                                    [](Figure& f) { f.points[0].y_error = {1}; },
+                                                    [](Figure& f) { f.lines[0].at = 2; },
+                                                    [](Figure& f) { f.notes[0].text = "there"; },
+                                                    [](Figure& f) { f.classes[0].colours[0].blue = 0; },
+                                                    [](Figure& f) { f.classes[0].index[0] = 1; },
+                                                    [](Figure& f) { f.maps[0].values[0] = 6; },
+                                                    [](Figure& f) { f.arrows[0].dx[0] = 2; },
+                                                    [](Figure& f) { f.bars[0].errors[0] = 1; },
+                                                    [](Figure& f) { f.equal_scales = true; },
+                                                    [](Figure& f) { f.legend = false; }};
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+        Figure other = figure;
+        changes[i](other);
+        EXPECT_FALSE(same_figure(figure, other)) << i;
+    }
 }
 
 }  // namespace

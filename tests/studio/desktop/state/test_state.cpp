@@ -92,6 +92,9 @@ std::vector<std::string> every_action() {
         "region glide feedback=gap_gain=10,velocity_gain=9,reference=20mm,limit=0.05N",
         "region glide start=gap=5mm,pitch=2deg",
         "cells design body section",
+        "turn design 0.3,0.2,-0.1/0,0,0/0,0,1/50mm",
+        "turn compare 0,0,-0.4/0,0,0/0,1,0/0.1",
+        "outline off",
         "region glide cells=60 duration=20s set.vehicle.net_weight=0.2 start=5mm,10mm/s",
         "region glide as_declared=",
         "axes pitch drag_force",
@@ -175,6 +178,44 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
     EXPECT_EQ(*history.state(), opened());
     history.go_to(most);
     EXPECT_EQ(state_hash(*history.state()), last);
+}
+
+// A view that a hand turned was lost with the window.
+TEST(StudioState, AViewThatWasTurnedIsKept) {
+    State state = opened();
+    for (const char* line : {"turn design 0.3,0.2,-0.1/0,0,0/0,0,1/50mm", "turn compare 0,0,-400mm/0,0,0/0,1,0/0.1"}) {
+        state = applied(state, words_of(line), *evie_session());
+    }
+    ASSERT_TRUE(state.design.turned && state.fields.turned);
+    EXPECT_EQ(text_of(*state.design.turned), "0.3,0.2,-0.1/0,0,0/0,0,1/0.05");
+    EXPECT_EQ(text_of(*state.fields.turned), "0,0,-0.4/0,0,0/0,1,0/0.1");
+    EXPECT_EQ(state_from_json(nlohmann::json(state)), state) << "in the session";
+    const State other = applied(state, words_of("select case/ellipse-h2-p0"), *evie_session());
+    EXPECT_EQ(other.fields.turned, state.fields.turned) << "cases are seen alike";
+    EXPECT_FALSE(applied(state, words_of("fields camera=iso"), *evie_session()).fields.turned);
+    EXPECT_FALSE(applied(state, words_of("turn design"), *evie_session()).design.turned);
+    for (const char* nonsense :
+         {"turn tables 0.3,0.2,-0.1/0,0,0/0,0,1/1", "turn design 1,2,3", "turn design 0,0,0/0,0,0/0,0,1/1",
+          "turn design 0,0,1/0,0,0/0,0,1/1", "turn design 0.3,0.2,-0.1/0,0,0/0,0,1/0"}) {
+        EXPECT_THROW(applied(state, words_of(nonsense), *evie_session()), core::UsageError) << nonsense;
+    }
+}
+
+// Files from outside may be of any size: one that is turned by hand says nothing of another.
+TEST(StudioState, AnotherFileFromOutsideIsSeenWhole) {
+    State state = opened();
+    const std::string a = (elsewhere() / "a.csv").string(), b = (elsewhere() / "b.csv").string();
+    core::write_file(b, core::read_file(a));
+    for (const std::string& line :
+         {"add field " + a, "add field " + b, "select field/" + a, std::string("turn compare 0,0,-0.4/0,0,0/0,1,0/0.1"),
+          "select field/" + a + " field/" + b}) {
+        state = applied(state, words_of(line), *evie_session());
+    }
+    EXPECT_TRUE(state.fields.turned) << "one more beside it";
+    EXPECT_TRUE(applied(state, words_of("select field/" + b), *evie_session()).fields.turned);
+    state = applied(state, words_of("select field/" + a), *evie_session());
+    EXPECT_FALSE(applied(state, words_of("select field/" + b), *evie_session()).fields.turned);
+    EXPECT_FALSE(applied(state, words_of("select case/ellipse-h2-p0"), *evie_session()).fields.turned);
 }
 
 // F12 proposed no name.
