@@ -1,12 +1,10 @@
-// bench_desktop [STUDY] [--faces N] [--cases FOLDER] [--paraview COMMAND]: the figures of the window on a display of
-// its own (Xvfb, software renderer) by the clock, for a quiet machine. STUDY: computed, as `underbody study run` leaves
-// it (default cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of
-// very many cases, as tests/bench/cases/bench_scaling.py makes them. COMMAND: pvpython, which opens and turns the same
-// surface on the same display (Debian's python3-paraview and libvtk9-dev exclude each other: unpack it beside with dpkg
-// -x).
+// bench_desktop [STUDY] [--faces N] [--cases FOLDER] [--keep FILE.stl]: the figures of the window on a display of its
+// own (Xvfb, software renderer) by the clock, for a quiet machine. STUDY: computed, as `underbody study run` leaves it
+// (default cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of
+// very many cases, as tests/bench/cases/bench_scaling.py makes them. FILE.stl: where the large surface is kept, which
+// side_by_side.py opens and turns beside ParaView.
 #include <QVTKOpenGLNativeWidget.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <QApplication>
 #include <QElapsedTimer>
@@ -15,10 +13,8 @@
 #include <QScrollBar>
 #include <QSurfaceFormat>
 #include <QTest>
-#include <QTimer>
+#include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 #include "core/file.h"
 #include "core/virtual_display.h"
@@ -30,121 +26,13 @@
 #include "studio/desktop/state/words.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/desktop/theme.h"
+#include "tests/bench/desktop/measuring.h"
 #include "tests/support/many_faces.h"
 
 namespace underbody::studio {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Since the process was started, s.
-double age() {
-    std::ifstream file("/proc/self/stat");
-    std::string text((std::istreambuf_iterator<char>(file)), {});
-    std::istringstream rest(text.substr(text.rfind(')') + 2));
-    std::string word;
-    for (int i = 0; i < 20; ++i) {
-        rest >> word;
-    }
-    timespec now{};
-    ::clock_gettime(CLOCK_BOOTTIME, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
-           std::stod(word) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-}
-
-/// Resident, and the part of it that belongs to this process alone, MB.
-std::array<double, 2> memory() {
-    std::ifstream file("/proc/self/status");
-    std::array<double, 2> found{};
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with("VmRSS:")) {
-            found[0] = std::stod(line.substr(6)) / 1024;
-        } else if (line.starts_with("RssAnon:")) {
-            found[1] = std::stod(line.substr(8)) / 1024;
-        }
-    }
-    return found;
-}
-
-void say_memory(const char* what, double goal) {
-    const auto [all, own] = memory();
-    std::printf("memory, %-32s %8.0f MB    (goal %.0f; %.0f of it not of libraries)\n", what, all, goal, own);
-}
-
-void say(const std::string& what, double seconds, const std::string& goal) {
-    std::printf("%-40s %8.0f ms    (goal %s)\n", what.c_str(), 1000 * seconds, goal.c_str());
-    std::fflush(stdout);
-}
-
-/// Of the thread that asks, s.
-double thread_time() {
-    timespec time{};
-    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-struct Gap {
-    double clock = 0;      ///< s
-    double processor = 0;  ///< s of the window's thread in the gap that had most of it: beside other work, too
-};
-
-/// Longest time by the clock that a timer of 2 ms was not served, the period taken off: everything that keeps the
-/// window's thread from its loop, whichever loop it is.
-class ClockBeat : public QObject {
-public:
-    ClockBeat() {
-        timer_.setTimerType(Qt::PreciseTimer);
-        connect(&timer_, &QTimer::timeout, this, [this] {
-            longest_.clock = std::max(longest_.clock, 1e-9 * static_cast<double>(time_.nsecsElapsed()) - 0.002);
-            longest_.processor = std::max(longest_.processor, thread_time() - used_);
-            restart();
-        });
-        timer_.start(2);
-        restart();
-    }
-    Gap take() {
-        QApplication::processEvents();
-        const Gap longest = longest_;
-        QApplication::processEvents();
-        longest_ = {};
-        restart();
-        return longest;
-    }
-
-private:
-    void restart() {
-        time_.restart();
-        used_ = thread_time();
-    }
-    QTimer timer_;
-    QElapsedTimer time_;
-    double used_ = 0;
-    Gap longest_;
-};
-
-void say(const std::string& what, const Gap& gap, const std::string& goal) {
-    std::printf("%-40s %8.0f ms    (goal %s; %.0f ms of the thread's processor time)\n", what.c_str(), 1000 * gap.clock,
-                goal.c_str(), 1000 * gap.processor);
-    std::fflush(stdout);
-}
-
-/// Processor time of the process, s.
-double process_time() {
-    timespec time{};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// Until it is so, in seconds; at most a minute.
-template <class Done>
-double until(Done done) {
-    QElapsedTimer time;
-    time.start();
-    while (!done() && time.elapsed() < 60000) {
-        QApplication::processEvents(QEventLoop::WaitForMoreEvents | QEventLoop::AllEvents, 2);
-    }
-    return 1e-9 * static_cast<double>(time.nsecsElapsed());
-}
 
 class Bench {
 public:
@@ -212,6 +100,43 @@ public:
         say("  longest gap of the loop", beat_.take(), "100");
     }
 
+    /// From a number that is changed to the body in its view, as a key on its slider changes it.
+    void slider_to_pixels() {
+        QVTKOpenGLNativeWidget* view = nullptr;
+        auto& design = panel<DesignPanel>();
+        for (auto* one : design.findChildren<QVTKOpenGLNativeWidget*>()) {
+            view = one;
+        }
+        std::vector<double> shown, drawn, used;
+        int frames = 0;
+        const auto counting = QObject::connect(view, &QOpenGLWidget::frameSwapped, [&frames] { ++frames; });
+        for (int i = 0; i < 30; ++i) {
+            QTest::qWait(40);  // a key that is held repeats every 33 to 40 ms
+            const auto* before = design.shown().get();
+            const double before_it = thread_time();
+            QElapsedTimer time;
+            time.start();
+            window_.desk().act({"set", "protrusion.height=" + std::to_string(1 + 0.01 * i) + " mm"}, "keys");
+            until([&] { return design.shown().get() != before; });
+            shown.push_back(1e-6 * static_cast<double>(time.nsecsElapsed()));
+            const int seen = frames;
+            until([&] { return frames > seen; });
+            drawn.push_back(1e-6 * static_cast<double>(time.nsecsElapsed()));
+            used.push_back(1000 * (thread_time() - before_it));
+        }
+        QObject::disconnect(counting);
+        window_.desk().end_gesture();
+        for (auto* times : {&shown, &drawn, &used}) {
+            std::sort(times->begin(), times->end());
+        }
+        const std::size_t middle = drawn.size() / 2;
+        std::printf(
+            "%-40s %8.1f ms    (goal 50; most %.0f; its body is made after %.1f; %.1f of the thread's processor)\n",
+            "number to pixels, median", drawn[middle], drawn.back(), shown[middle], used[middle]);
+        settle(window_);
+        beat_.take();
+    }
+
     void cancel() {
         window_.jobs().start("bench", "waiting", [](core::Progress& progress) -> std::function<void()> {
             for (;;) {
@@ -224,10 +149,10 @@ public:
         say("cancel to nothing running", until([&] { return !window_.jobs().busy(); }), "200");
     }
 
-    void faces(int count, const fs::path& folder, const std::string& paraview) {
-        test::write_stl(folder / "many.stl", count);
+    void faces(int count, const fs::path& file) {
+        test::write_stl(file, count);
         beat_.take();
-        window_.take_files({folder / "many.stl"});
+        window_.take_files({file});
         auto& fields = panel<FieldsPanel>();
         say(std::to_string(count) + " faces to the first picture", until([&] { return fields.stands_in(0); }), "6000");
         QVTKOpenGLNativeWidget* view = nullptr;
@@ -237,38 +162,36 @@ public:
         say("  longest gap of the loop", beat_.take(), "100");
         say("  whole picture", until([&] { return !fields.stands_in(0); }), "3200: 200 of rest and 3000");
         say("  longest gap of the loop", beat_.take(), "100");
-        const QPoint middle = view->rect().center();
-        QTest::mousePress(view, Qt::LeftButton, Qt::NoModifier, middle);
+        turned(*view);
+        say_memory("with them", 700);
+        turned(*view);
+        say_memory("after another turn", 700);
+        while (window_.desk().state().selection == std::vector<std::string>{"field/" + file.string()}) {
+            window_.desk().undo();
+        }
+        settle(window_);
+    }
+
+    void turned(QVTKOpenGLNativeWidget& view) {
+        auto& fields = panel<FieldsPanel>();
+        const QPoint middle = view.rect().center();
+        QTest::mousePress(&view, Qt::LeftButton, Qt::NoModifier, middle);
         int frames = 0;
-        const auto counting = QObject::connect(view, &QOpenGLWidget::frameSwapped, [&frames] { ++frames; });
+        const auto counting = QObject::connect(&view, &QOpenGLWidget::frameSwapped, [&frames] { ++frames; });
         QElapsedTimer time;
         time.start();
         const double before = process_time();
         for (int move = 0; time.elapsed() < 3000; ++move) {
-            QTest::mouseMove(view, middle + QPoint(move % 200, move % 120));
+            QTest::mouseMove(&view, middle + QPoint(move % 200, move % 120));
             const int seen = frames;
             until([&] { return frames > seen || time.elapsed() >= 3000; });
         }
         std::printf("%-40s %8.1f /s    (goal 15; %.0f ms of processor each)\n", "  pictures while turning",
                     1000.0 * frames / static_cast<double>(time.elapsed()), 1000 * (process_time() - before) / frames);
         QObject::disconnect(counting);
-        QTest::mouseRelease(view, Qt::LeftButton, Qt::NoModifier, middle);
+        QTest::mouseRelease(&view, Qt::LeftButton, Qt::NoModifier, middle);
         say("  longest gap of the loop", beat_.take(), "100");
         say("  whole picture after the turn", until([&] { return !fields.stands_in(0); }), "3200");
-        say_memory("with them", 700);
-        window_.desk().undo();
-        settle(window_);
-        if (!paraview.empty()) {
-            window_.hide();
-            const std::string command = paraview +
-                                        " " UNDERBODY_SOURCE_FOLDER "/tests/bench/desktop/paraview_turn.py " +
-                                        (folder / "many.stl").string();
-            std::printf("ParaView, the same surface and display:\n");
-            std::fflush(stdout);
-            if (std::system(command.c_str()) != 0) {
-                throw std::runtime_error("'" + paraview + "' did not draw the surface");
-            }
-        }
     }
 
     void many_cases(const fs::path& folder) {
@@ -379,7 +302,7 @@ private:
 
 int run(int argc, char** argv) {
     fs::path study = fs::path(UNDERBODY_SOURCE_FOLDER) / "cases" / "evie", cases;
-    std::string paraview;
+    fs::path kept;
     int faces = 5000000;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -387,8 +310,8 @@ int run(int argc, char** argv) {
             faces = std::stoi(argv[++i]);
         } else if (word == "--cases" && i + 1 < argc) {
             cases = argv[++i];
-        } else if (word == "--paraview" && i + 1 < argc) {
-            paraview = argv[++i];
+        } else if (word == "--keep" && i + 1 < argc) {
+            kept = argv[++i];
         } else {
             study = word;
         }
@@ -399,6 +322,7 @@ int run(int argc, char** argv) {
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
     ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     ::mallopt(M_ARENA_MAX, 2);  // as underbody-studio
+    ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);
     const double display_took = age() - before_display;
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication application(argc, argv);
@@ -418,10 +342,11 @@ int run(int argc, char** argv) {
     bench.study(study);
     bench.actions();
     bench.drag();
+    bench.slider_to_pixels();
     bench.cancel();
     const core::TemporaryFolder scratch;
     if (faces > 0) {
-        bench.faces(faces, scratch.path(), paraview);
+        bench.faces(faces, kept.empty() ? scratch.path() / "many.stl" : kept);
     }
     if (!cases.empty()) {
         bench.many_cases(cases);
