@@ -217,7 +217,7 @@ def run(surface, studio, runs):
                     Path(pictures, f"{name}-{what}.ppm").write_bytes(b"P6 %d %d 255\n" % (box[2], box[3]) + rgb.tobytes())
             print(f"{name}: load {os.getloadavg()[0]:.1f}, " + ", ".join(f"{what} {number:.3g}" for what, number in found[name][-1].items()),
                   flush=True)
-    print(f"\nmedians of {runs} (least to most); view {VIEW[2]} x {VIEW[3]} px\n| what | window | ParaView | ratio |\n|---|---|---|---|")
+    print(f"\nmedians of {runs} (least to most); view {VIEW[2]} x {VIEW[3]} px\n| what | window | ParaView | ParaView to window |\n|---|---|---|---|")
     for what in found["window"][0]:
         numbers = [[one[what] for one in found[name]] for name in programs]
         ours, theirs = (statistics.median(one) for one in numbers)
