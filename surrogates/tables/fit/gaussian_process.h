@@ -68,6 +68,12 @@ struct GpPrediction {
     std::vector<double> variance_slope;
 };
 
+/// Means of many points, and their slopes [point * axes + axis] where asked for.
+struct GpMeans {
+    std::vector<double> mean;
+    std::vector<double> slope;
+};
+
 /// A fitted process. Immutable.
 class GaussianProcess {
 public:
@@ -109,6 +115,11 @@ public:
     /// axis], the derivatives of the trend functions by the coordinates, the slopes too.
     [[nodiscard]] GpPrediction predict(std::span<const double> x, std::span<const double> trend,
                                        std::span<const double> trend_slope = {}) const;
+    /// The means of predict() alone, of several points at once: x [point * axes], trend [point * trends], trend_slope
+    /// [(point * trends + trend) * axes + axis] or empty. Without variances, and coordinates that all points share are
+    /// taken once: a curve costs little more than a point.
+    [[nodiscard]] GpMeans means(std::span<const double> x, std::span<const double> trend,
+                                std::span<const double> trend_slope = {}) const;
     /// Covariance of the force at several points, for processes of amplitude 1: x [point * axes], trend [point *
     /// trends]; the result [i * points + j].
     [[nodiscard]] std::vector<double> covariance(std::span<const double> x, std::span<const double> trend) const;

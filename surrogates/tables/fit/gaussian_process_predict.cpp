@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "surrogates/tables/fit/gaussian_process_state.h"
 
@@ -17,34 +19,62 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Covariances of the process (without trend) between a point and the data; with `rate` [point, axis] the derivative of
-/// their logarithm by the point's coordinates.
-ArrayXd covariances(const ArrayXXd& data, Kernel kernel, const GpParameters& p, std::span<const double> x,
-                    ArrayXXd* rate) {
-    ArrayXd exponent = ArrayXd::Zero(data.rows());
-    ArrayXd factor = ArrayXd::Constant(data.rows(), p.scale * p.scale);
-    if (rate != nullptr) {
-        rate->resize(data.rows(), data.cols());
+/// Covariances of the process (without trend) with the data, made up axis by axis; with rates [point, axis] the
+/// derivative of their logarithm by the point's coordinates.
+struct Product {
+    ArrayXd exponent, factor;
+    ArrayXXd rate;
+
+    Product(const ArrayXXd& data, const GpParameters& p, bool rates)
+        : exponent(ArrayXd::Zero(data.rows())), factor(ArrayXd::Constant(data.rows(), p.scale * p.scale)) {
+        if (rates) {
+            rate.resize(data.rows(), data.cols());
+        }
     }
-    for (Eigen::Index a = 0; a < data.cols(); ++a) {
+
+    void take(const ArrayXXd& data, Kernel kernel, const GpParameters& p, Eigen::Index a, double x) {
         const double length = p.length[static_cast<std::size_t>(a)];
-        const ArrayXd d = (x[static_cast<std::size_t>(a)] - data.col(a)) / length;
+        const ArrayXd d = (x - data.col(a)) / length;
         if (kernel == Kernel::squared_exponential) {
             exponent += 0.5 * d.square();
-            if (rate != nullptr) {
-                rate->col(a) = -d / length;
+            if (rate.size() > 0) {
+                rate.col(a) = -d / length;
             }
         } else {
             const ArrayXd s = std::sqrt(5.0) * d.abs();
             const ArrayXd polynomial = 1 + s + s.square() / 3;
             exponent += s;
             factor *= polynomial;
-            if (rate != nullptr) {
-                rate->col(a) = -5.0 / 3.0 * d * (1 + s) / (polynomial * length);
+            if (rate.size() > 0) {
+                rate.col(a) = -5.0 / 3.0 * d * (1 + s) / (polynomial * length);
             }
         }
     }
-    return factor * (-exponent).exp();
+
+    [[nodiscard]] ArrayXd covariances() const { return factor * (-exponent).exp(); }
+};
+
+ArrayXd covariances(const ArrayXXd& data, Kernel kernel, const GpParameters& p, std::span<const double> x,
+                    ArrayXXd* rate) {
+    Product product(data, p, rate != nullptr);
+    for (Eigen::Index a = 0; a < data.cols(); ++a) {
+        product.take(data, kernel, p, a, x[static_cast<std::size_t>(a)]);
+    }
+    if (rate != nullptr) {
+        *rate = std::move(product.rate);
+    }
+    return product.covariances();
+}
+
+/// Axes in which not all points [point, axis] are equal.
+std::vector<Eigen::Index> axes_that_vary(const Eigen::Map<const RowMajor>& points) {
+    std::vector<Eigen::Index> varying;
+    for (Eigen::Index a = 0; a < points.cols(); ++a) {
+        if ((points.col(a).array() != points(0, a)).any()) {
+            varying.push_back(a);
+        }
+    }
+    return varying;
 }
 
 }  // namespace
@@ -76,6 +106,41 @@ GpPrediction GaussianProcess::predict(std::span<const double> x, std::span<const
             const VectorXd dk = (process * rate.col(a)).matrix() + data.trend_variance * (h * dh.col(a));
             result.mean_slope.push_back(dk.dot(weights));
             result.variance_slope.push_back(2 * (data.trend_variance * own.dot(dh.col(a)) - u.dot(dk)));
+        }
+    }
+    return result;
+}
+
+GpMeans GaussianProcess::means(std::span<const double> x, std::span<const double> trend,
+                               std::span<const double> trend_slope) const {
+    const State& s = *state_;
+    const auto axes = static_cast<Eigen::Index>(s.data.axes), trends = static_cast<Eigen::Index>(s.data.trends);
+    const auto points = static_cast<Eigen::Index>(x.size()) / axes;
+    const Eigen::Map<const RowMajor> at(x.data(), points, axes), own(trend.data(), points, trends);
+    const Eigen::Map<const VectorXd> weights(s.weights.data(), static_cast<Eigen::Index>(s.weights.size()));
+    const Eigen::Map<const VectorXd> coefficients(s.coefficients.data(), trends);
+    const bool slopes = !trend_slope.empty();
+    const std::vector<Eigen::Index> varying = axes_that_vary(at);
+    Product shared(s.x, s.parameters, slopes);
+    for (Eigen::Index a = 0; a < axes; ++a) {
+        if (std::find(varying.begin(), varying.end(), a) == varying.end()) {
+            shared.take(s.x, s.kernel, s.parameters, a, at(0, a));
+        }
+    }
+    GpMeans result;
+    for (Eigen::Index i = 0; i < points; ++i) {
+        Product product = shared;
+        for (const Eigen::Index a : varying) {
+            product.take(s.x, s.kernel, s.parameters, a, at(i, a));
+        }
+        const ArrayXd weighted = product.covariances() * weights.array();
+        result.mean.push_back(weighted.sum() + own.row(i).dot(coefficients));
+        if (slopes) {
+            const Eigen::Map<const RowMajor> dh(&trend_slope[static_cast<std::size_t>(i * trends * axes)], trends,
+                                                axes);
+            const VectorXd slope =
+                product.rate.matrix().transpose() * weighted.matrix() + dh.transpose() * coefficients;
+            result.slope.insert(result.slope.end(), slope.data(), slope.data() + axes);
         }
     }
     return result;

@@ -36,6 +36,13 @@ Function with_differences(std::function<double(std::span<const double>)> f) {
     };
 }
 
+/// How many places a search begins with: the error of a curve, which a limit on it asks for, costs hundreds of points.
+std::size_t places_for(const SearchProblem& problem, double sigmas, std::size_t an_axis, std::size_t most) {
+    const bool dear = sigmas > 0 && std::any_of(problem.limits.begin(), problem.limits.end(),
+                                                [](const Limit& limit) { return limit.response.curve.has_value(); });
+    return std::min(most, an_axis * problem.variables.size()) / (dear ? 8 : 1);
+}
+
 /// Best point from a start; the start itself where no step could be made.
 std::vector<double> polished(const Function& objective, const std::vector<Function>& limits, std::vector<double> u) {
     nlopt::opt search(nlopt::LD_SLSQP, static_cast<unsigned>(u.size()));
@@ -65,15 +72,13 @@ std::vector<double> polished(const Function& objective, const std::vector<Functi
 /// scaled by the spread of its quantity so that one tolerance fits all.
 struct DesignSearch::OnTheCube {
     std::vector<Function> objectives, limits;
-    std::vector<double> spreads;
 
     OnTheCube(const DesignSearch& search, double sigmas) {
         const SearchProblem& problem = search.problem_;
         for (const Objective& objective : problem.objectives) {
-            const double spread = search.bind(objective.response).surrogate->spread();
-            spreads.push_back(spread);
+            const double spread = search.bind(objective.response).size;
             objectives.push_back(response(
-                search, objective.response,
+                search, objective.response, Errors::none,
                 [&search, &objective, spread](ResponseValue v) {
                     return std::pair{search.cost_of(objective, v.value) / spread, 0.0};
                 },
@@ -85,10 +90,11 @@ struct DesignSearch::OnTheCube {
                 }));
         }
         for (const Limit& limit : problem.limits) {
-            const double spread = search.bind(limit.response).surrogate->spread();
+            const double spread = search.bind(limit.response).size;
+            const Errors errors = sigmas > 0 ? Errors::stated : Errors::none;
             if (core::is_limit(limit.upper)) {
                 limits.push_back(response(
-                    search, limit.response,
+                    search, limit.response, errors,
                     [=](ResponseValue v) {
                         return std::pair{(v.value + sigmas * v.sigma - limit.upper) / spread, 0.0};
                     },
@@ -98,7 +104,7 @@ struct DesignSearch::OnTheCube {
             }
             if (core::is_limit(limit.lower)) {
                 limits.push_back(response(
-                    search, limit.response,
+                    search, limit.response, errors,
                     [=](ResponseValue v) {
                         return std::pair{(limit.lower - v.value + sigmas * v.sigma) / spread, 0.0};
                     },
@@ -125,17 +131,16 @@ private:
     using OfValue = std::function<std::pair<double, double>(ResponseValue)>;
 
     /// f(response) with slopes by the chain rule: `rates` are df/dvalue and df/dsigma.
-    static Function response(const DesignSearch& search, const Response& response, OfValue f, OfValue rates) {
+    static Function response(const DesignSearch& search, const Response& response, Errors errors, OfValue f,
+                             OfValue rates) {
         const Bound bound = search.bind(response);
-        return [&search, bound, f = std::move(f), rates = std::move(rates)](std::span<const double> u,
-                                                                            std::span<double> slope) {
+        return [&search, bound, errors, f = std::move(f), rates = std::move(rates)](std::span<const double> u,
+                                                                                    std::span<double> slope) {
             const std::vector<double> x = search.unscaled(u);
             if (slope.empty()) {
-                return f(search.value(bound, x)).first;
+                return f(search.value(bound, x, errors)).first;
             }
-            ResponseValue value;
-            std::vector<double> by_value, by_sigma;
-            search.value_with_slopes(bound, x, value, by_value, by_sigma);
+            const auto [value, by_value, by_sigma] = search.value_with_slopes(bound, x, errors);
             const auto [a, b] = rates(value);
             for (std::size_t v = 0; v < slope.size(); ++v) {
                 slope[v] = (a * by_value[v] + b * by_sigma[v]) / search.problem_.variables[v].scaled_slope(x[v]);
@@ -145,19 +150,15 @@ private:
     }
 };
 
-void DesignSearch::value_with_slopes(const Bound& bound, std::span<const double> x, ResponseValue& value,
-                                     std::vector<double>& by_value, std::vector<double>& by_sigma) const {
-    value = this->value(bound, x);
-    by_value.assign(x.size(), 0.0);
-    by_sigma.assign(x.size(), 0.0);
-    for (std::size_t p = 0; p < bound.points.size(); ++p) {
-        std::vector<double> point = bound.points[p];
-        for (std::size_t v = 0; v < x.size(); ++v) {
-            if (bound.filled[v] != static_cast<std::size_t>(-1)) {
-                point[bound.filled[v]] = x[v];
-            }
-        }
-        const SurrogatePrediction here = bound.surrogate->at(point, true);
+ResponseSlopes DesignSearch::value_with_slopes(const Bound& bound, std::span<const double> x, Errors errors) const {
+    ResponseSlopes result{value(bound, x, errors), std::vector<double>(x.size(), 0.0),
+                          std::vector<double>(x.size(), 0.0)};
+    auto& [value, by_value, by_sigma] = result;
+    if (bound.curve) {
+        slopes_of_curve(bound, x, by_value);
+    }
+    for (std::size_t p = 0; p < bound.weights.size(); ++p) {
+        const SurrogatePrediction here = bound.surrogate->at(bound.filled_point(p, x), true);
         for (std::size_t v = 0; v < x.size(); ++v) {
             if (bound.filled[v] != static_cast<std::size_t>(-1)) {
                 by_value[v] += bound.weights[p] * here.slope[bound.filled[v]];
@@ -165,36 +166,47 @@ void DesignSearch::value_with_slopes(const Bound& bound, std::span<const double>
             }
         }
     }
-    if (bound.points.size() > 1) {  // the error of a difference has no simple slope
-        for (std::size_t v = 0; v < x.size(); ++v) {
-            std::vector<double> moved(x.begin(), x.end());
-            const double step = 1e-5 / problem_.variables[v].scaled_slope(x[v]);
-            moved[v] = x[v] + step;
-            const double above = this->value(bound, moved).sigma;
-            moved[v] = x[v] - step;
-            by_sigma[v] = (above - this->value(bound, moved).sigma) / (2 * step);
-        }
+    if (bound.points.size() > 1 && errors == Errors::stated) {
+        slopes_of_sigma(bound, x, by_sigma);
+    }
+    return result;
+}
+
+ResponseSlopes DesignSearch::slopes(const Response& response, std::span<const double> x) const {
+    return value_with_slopes(bind(response), x, Errors::stated);
+}
+
+/// The error of a difference and of a curve has no simple slope; that of a curve has small kinks, where a drawn one
+/// gains or loses a balance.
+void DesignSearch::slopes_of_sigma(const Bound& bound, std::span<const double> x, std::vector<double>& by_sigma) const {
+    for (std::size_t v = 0; v < x.size(); ++v) {
+        std::vector<double> moved(x.begin(), x.end());
+        const double step = (bound.curve ? 1e-3 : 1e-5) / problem_.variables[v].scaled_slope(x[v]);
+        moved[v] = x[v] + step;
+        const double above = this->value(bound, moved, Errors::stated).sigma;
+        moved[v] = x[v] - step;
+        by_sigma[v] = (above - this->value(bound, moved, Errors::stated).sigma) / (2 * step);
     }
 }
 
 std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed, core::Progress& progress) const {
     const std::size_t axes = problem_.variables.size();
     const OnTheCube cube(*this, sigmas);
-    std::vector<std::pair<double, std::vector<double>>> starts;
-    for (std::vector<double>& u : sobol_plan(std::min<std::size_t>(2000, 250 * axes), axes, seed)) {
+    std::vector<std::pair<double, std::vector<double>>> tried;
+    for (std::vector<double>& u : sobol_plan(places_for(problem_, sigmas, 250, 2000), axes, seed)) {
         // Starts that break a limit come after those that do not.
         const double value = cube.objectives.front()(u, {}) + 1e3 * cube.violation(u);
-        starts.emplace_back(value, std::move(u));
+        tried.emplace_back(value, std::move(u));
     }
-    const std::size_t used = std::min<std::size_t>(10, starts.size());
-    std::partial_sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(used), starts.end());
+    const std::size_t used = std::min<std::size_t>(10, tried.size());
+    std::partial_sort(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(used), tried.end());
     constexpr double tolerance = 1e-6;
     double best = std::numeric_limits<double>::infinity();
     std::optional<Candidate> result;
     for (std::size_t i = 0; i < used; ++i) {
         progress.check();
         for (const std::vector<double>& u :
-             {starts[i].second, polished(cube.objectives.front(), cube.limits, starts[i].second)}) {
+             {tried[i].second, polished(cube.objectives.front(), cube.limits, tried[i].second)}) {
             const double value = cube.objectives.front()(u, {});
             if (cube.violation(u) <= tolerance && value < best) {
                 best = value;
@@ -277,7 +289,7 @@ std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, double sigm
         }
         points.push_back(std::move(point));
     };
-    for (const std::vector<double>& u : sobol_plan(std::min<std::size_t>(3000, 500 * axes), axes, seed)) {
+    for (const std::vector<double>& u : sobol_plan(places_for(problem_, sigmas, 500, 3000), axes, seed)) {
         take(u);
     }
     keep_front(points);
@@ -318,6 +330,9 @@ core::Table table(const DesignSearch& search, const std::vector<Candidate>& cand
         const std::string unit = search.unit_of(r);
         column(r.name, unit, [&](const Candidate& c) { return member(c).value; });
         column(r.name + "_sigma", unit, [&](const Candidate& c) { return member(c).sigma; });
+        if (r.curve) {
+            column(r.name + "_at_least", "1", [&](const Candidate& c) { return member(c).at_least ? 1.0 : 0.0; });
+        }
     };
     for (std::size_t k = 0; k < problem.objectives.size(); ++k) {
         response(problem.objectives[k].response,
@@ -333,6 +348,9 @@ core::Table table(const DesignSearch& search, const std::vector<Candidate>& cand
 }
 
 std::string DesignSearch::unit_of(const Response& response) const {
+    if (response.curve) {
+        return tables::unit_of(response.curve->curve);
+    }
     const Bound bound = bind(response);
     const std::string& unit = bound.surrogate->unit();
     if (response.slope_along.empty()) {

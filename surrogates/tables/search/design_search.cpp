@@ -15,7 +15,6 @@ namespace underbody::tables {
 
 namespace {
 
-constexpr std::size_t none = static_cast<std::size_t>(-1);
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double apart = 0.01;  // share of the ranges within which two runs say the same
 
@@ -95,100 +94,15 @@ DesignSearch::DesignSearch(SearchProblem problem, std::map<std::string, Surrogat
     }
 }
 
-namespace {
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-    const auto at = std::find(names.begin(), names.end(), name);
-    return at == names.end() ? none : static_cast<std::size_t>(at - names.begin());
+bool DesignSearch::has_curves() const {
+    const auto is_curve = [](const auto& one) { return one.response.curve.has_value(); };
+    return std::any_of(problem_.objectives.begin(), problem_.objectives.end(), is_curve) ||
+           std::any_of(problem_.limits.begin(), problem_.limits.end(), is_curve);
 }
 
-/// The values that a response's conditions state; every other variable must be among those that are searched.
-std::vector<double> stated_point(const Response& response, const std::vector<std::string>& names,
-                                 const std::vector<std::size_t>& searched) {
-    std::vector<double> point(names.size(), 0.0);
-    std::vector<bool> given(names.size(), false);
-    for (const core::NamedValue& condition : response.conditions) {
-        const std::size_t i = index_of(names, condition.name);
-        if (i == none) {
-            throw core::InputError(
-                "condition", "\"" + response.name + "\" states " + condition.name + ", which the runs do not vary", {},
-                core::did_you_mean(condition.name, names));
-        }
-        point[i] = condition.value;
-        given[i] = true;
-    }
-    for (const std::size_t i : searched) {
-        if (i != none) {
-            given[i] = true;
-        }
-    }
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (!given[i]) {
-            throw core::InputError("condition", "\"" + response.name + "\" does not say at which " + names[i], {},
-                                   "state it as a condition, or search it");
-        }
-    }
-    return point;
-}
-
-}  // namespace
-
-DesignSearch::Bound DesignSearch::bind(const Response& response) const {
-    const auto found = surrogates_.find(response.quantity);
-    if (found == surrogates_.end()) {
-        std::vector<std::string> names;
-        for (const auto& [name, surrogate] : surrogates_) {
-            names.push_back(name);
-        }
-        throw core::InputError(
-            "quantity", "\"" + response.name + "\" asks for " + response.quantity + ", of which there is no surrogate",
-            {}, core::did_you_mean(response.quantity, names));
-    }
-    Bound bound;
-    bound.surrogate = &found->second;
-    std::vector<std::string> names;
-    for (const SearchVariable& v : bound.surrogate->variables()) {
-        names.push_back(v.name);
-    }
-    for (const SearchVariable& v : problem_.variables) {
-        bound.filled.push_back(index_of(names, v.name));
-    }
-    const std::vector<double> point = stated_point(response, names, bound.filled);
-    if (response.slope_along.empty()) {
-        bound.weights = {1};
-        bound.points = {point};
-        return bound;
-    }
-    const std::size_t along = index_of(names, response.slope_along);
-    if (along == none || !(response.half_width > 0)) {
-        throw core::InputError("slope",
-                               "\"" + response.name + "\" is a slope along " + response.slope_along +
-                                   (along == none ? ", which the runs do not vary" : " of no width"),
-                               {}, core::did_you_mean(response.slope_along, names));
-    }
-    bound.weights = {-0.5 / response.half_width, 0.5 / response.half_width};
-    bound.points = {point, point};
-    bound.points[0][along] -= response.half_width;
-    bound.points[1][along] += response.half_width;
-    return bound;
-}
-
-ResponseValue DesignSearch::value(const Bound& bound, std::span<const double> x) const {
-    std::vector<std::vector<double>> points = bound.points;
-    for (std::vector<double>& point : points) {
-        for (std::size_t v = 0; v < bound.filled.size(); ++v) {
-            if (bound.filled[v] != none) {
-                point[bound.filled[v]] = x[v];
-            }
-        }
-    }
-    const SurrogatePrediction p =
-        points.size() == 1 ? bound.surrogate->at(points.front()) : bound.surrogate->sum(bound.weights, points);
-    return {p.value, p.sigma};
-}
-
-ResponseValue DesignSearch::evaluate(const Response& response, std::span<const double> x) const {
-    return value(bind(response), x);
+/// How many places of a plan the next designs are looked for in first: a curve with its error costs hundreds of points.
+std::size_t DesignSearch::starts(std::size_t an_axis, std::size_t most) const {
+    return std::min(most, an_axis * problem_.variables.size()) / (has_curves() ? 8 : 1);
 }
 
 double DesignSearch::cost_of(const Objective& objective, double value) const {
@@ -236,14 +150,14 @@ Candidate DesignSearch::describe(std::span<const double> x) const {
 double DesignSearch::best_of(const std::vector<std::vector<double>>& designs) const {
     double best = std::numeric_limits<double>::quiet_NaN();
     for (const std::vector<double>& x : designs) {
-        const Candidate c = describe(x);
-        bool valid = known_limits_hold(x);
-        for (std::size_t i = 0; i < problem_.limits.size(); ++i) {
-            const double v = c.limits[i].value;
-            valid = valid && v >= problem_.limits[i].lower && v <= problem_.limits[i].upper;
-        }
+        const bool valid = known_limits_hold(x) &&
+                           std::all_of(problem_.limits.begin(), problem_.limits.end(), [&](const Limit& limit) {
+                               const double v = evaluate_alone(limit.response, x).value;
+                               return v >= limit.lower && v <= limit.upper;
+                           });
         if (valid) {
-            best = std::fmin(best, cost_of(problem_.objectives.front(), c.objectives.front().value));
+            const Objective& first = problem_.objectives.front();
+            best = std::fmin(best, cost_of(first, evaluate_alone(first.response, x).value));
         }
     }
     return best;
@@ -278,12 +192,7 @@ double DesignSearch::log_acquisition(std::span<const double> x, double best, con
 
 void DesignSearch::choose_level(Candidate& candidate, const NextOptions& options) const {
     const Bound bound = bind(problem_.objectives.front().response);
-    std::vector<double> point = bound.points.front();
-    for (std::size_t v = 0; v < bound.filled.size(); ++v) {
-        if (bound.filled[v] != none) {
-            point[bound.filled[v]] = candidate.at[v];
-        }
-    }
+    const std::vector<double> point = bound.filled_point(bound.told, candidate.at);
     candidate.sigma_now = bound.surrogate->at(point).sigma;
     double best = -1;
     for (const std::size_t t : bound.surrogate->fidelities()) {
@@ -302,17 +211,13 @@ DesignSearch DesignSearch::with(const std::vector<double>& at, std::size_t fidel
     DesignSearch result = *this;
     for (auto& [name, surrogate] : result.surrogates_) {
         for (const Objective& objective : problem_.objectives) {
-            if (objective.response.quantity != name) {
+            if (!objective.response.asks_for(name)) {
                 continue;
             }
             const Bound bound = bind(objective.response);
-            for (std::vector<double> point : bound.points) {
-                for (std::size_t v = 0; v < bound.filled.size(); ++v) {
-                    if (bound.filled[v] != none) {
-                        point[bound.filled[v]] = at[v];
-                    }
-                }
-                surrogate = surrogate.with({point, fidelity, std::numeric_limits<double>::quiet_NaN(), 0});
+            for (const std::size_t i : bound.runs) {
+                surrogate =
+                    surrogate.with({bound.filled_point(i, at), fidelity, std::numeric_limits<double>::quiet_NaN(), 0});
             }
         }
     }
@@ -361,12 +266,14 @@ struct Box {
 /// A place in the unit cube and its value.
 using Tried = std::pair<double, std::vector<double>>;
 
-/// Of a plan that fills the box the six of the largest value that hold what must hold.
+/// Of a plan of so many places that fills the box the six (of a small plan three) of the largest value that hold what
+/// must hold.
 template <class Value, class Holds>
-std::vector<Tried> best_places(const Box& box, std::uint64_t seed, const Value& value, const Holds& holds) {
+std::vector<Tried> best_places(const Box& box, std::size_t places, std::size_t count, std::uint64_t seed,
+                               const Value& value, const Holds& holds) {
     const std::size_t axes = box.low.size();
     std::vector<Tried> tried;
-    for (std::vector<double>& u : sobol_plan(std::min<std::size_t>(4000, 500 * axes), axes, seed)) {
+    for (std::vector<double>& u : sobol_plan(places, axes, seed)) {
         for (std::size_t v = 0; v < axes; ++v) {
             u[v] = box.low[v] + u[v] * (box.high[v] - box.low[v]);
         }
@@ -375,7 +282,7 @@ std::vector<Tried> best_places(const Box& box, std::uint64_t seed, const Value& 
     }
     std::sort(tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<Tried> best;
-    for (std::size_t i = 0; i < tried.size() && best.size() < 6 && tried[i].first > -1e10; ++i) {
+    for (std::size_t i = 0; i < tried.size() && best.size() < count && tried[i].first > -1e10; ++i) {
         if (holds(tried[i].second)) {
             best.push_back(std::move(tried[i]));
         }
@@ -423,7 +330,8 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
             return std::isfinite(value) ? value : -1e10;
         };
         std::vector<Tried> refined = best_places(
-            box, options.seed + batch.size(), [&](std::span<const double> u) { return value_by(unlimited, u); },
+            box, starts(500, 4000), has_curves() ? 3 : 6, options.seed + batch.size(),
+            [&](std::span<const double> u) { return value_by(unlimited, u); },
             [&](std::span<const double> u) { return search.known_limits_hold(unscaled(u)); });
         if (refined.empty()) {
             break;  // no further design meets the known limits
@@ -450,16 +358,7 @@ std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, c
     DesignSearch search = with_planned(options);
     Taken taken(problem_.variables, options);
     const Bound bound = bind(problem_.objectives.front().response);
-    const auto filled = [&](std::span<const double> u) {
-        std::vector<double> point = bound.points.front();
-        const std::vector<double> x = unscaled(u);
-        for (std::size_t v = 0; v < axes; ++v) {
-            if (bound.filled[v] != none) {
-                point[bound.filled[v]] = x[v];
-            }
-        }
-        return point;
-    };
+    const auto filled = [&](std::span<const double> u) { return bound.filled_point(bound.told, unscaled(u)); };
     while (batch.size() < options.count) {
         progress.check();
         const Surrogate& surrogate = search.surrogates_.at(problem_.objectives.front().response.quantity);

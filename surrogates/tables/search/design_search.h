@@ -1,13 +1,15 @@
 // Where to look next, and where the best is: searches on surrogates over shapes.
 //
 // A search varies some of the surrogates' variables; the others are conditions that each response states (lift at 5 mm
-// and zero pitch; the slope of the pitch moment over +-1 degree).
+// and zero pitch; the slope of the pitch moment over +-1 degree), or that it runs over (the kick that a balance over
+// the gap survives).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,17 +18,29 @@
 
 #include "core/progress.h"
 #include "core/units.h"
+#include "surrogates/tables/search/curve.h"
 #include "surrogates/tables/search/surrogate.h"
 
 namespace underbody::tables {
 
-/// A number that a design has: a quantity at stated conditions, or its difference quotient along one of them.
+struct CurveForces;
+
+/// A number that a design has: a quantity at stated conditions, its difference quotient along one of them, or a number
+/// of whole curves over gap and pitch.
 struct Response {
     std::string name;                          ///< as people call it: "lift at 5 mm"
     std::string quantity;                      ///< of a surrogate
     std::vector<core::NamedValue> conditions;  ///< SI; variables of the surrogate that are not searched
     std::string slope_along;                   ///< a condition; empty: the value itself
     double half_width = 0;                     ///< of the difference quotient, in the condition's SI unit
+    /// A number of curves: `quantity` is lift_force, or of a window at a stated gap the moment; conditions are those
+    /// that the curves do not run over.
+    std::optional<CurveAsked> curve = {};
+
+    /// Whether it is made of that quantity.
+    [[nodiscard]] bool asks_for(const std::string& of) const {
+        return of == quantity || (curve && curve->of_moment() && of == curve->moment);
+    }
 };
 
 struct Objective {
@@ -50,10 +64,18 @@ struct SearchProblem {
     std::vector<std::function<double(std::span<const double>)>> known_limits;
 };
 
-/// What a response is for a design: value and one sigma, SI.
+/// What a response is for a design: value and one sigma, SI. Of curves sigma is the root mean square distance to the
+/// value of the numbers of curves drawn whole from the surrogates' errors, different quantities independently.
 struct ResponseValue {
     double value = 0;
     double sigma = 0;
+    bool at_least = false;  ///< of a curve that the range of the data cuts: it may be more
+};
+
+/// A response and its derivatives by the searched variables, SI.
+struct ResponseSlopes {
+    ResponseValue value;
+    std::vector<double> by_value, by_sigma;
 };
 
 struct Candidate {
@@ -64,8 +86,9 @@ struct Candidate {
     double chance_valid = 1;   ///< that all limits hold
     double chance_solved = 1;  ///< that a run gives a result, learned from runs that failed
     std::size_t level = 0;     ///< fidelity that pays best, of those that have runs
-    double sigma_now = 0;      ///< of the first objective's quantity at its (first) conditions, highest fidelity
-    double sigma_after = 0;    ///< expected after its run on `level`
+    /// Of the first objective's quantity at its (first) conditions, in the middle of its curves; highest fidelity.
+    double sigma_now = 0;
+    double sigma_after = 0;  ///< expected after its run on `level`
 };
 
 /// Beyond so many variables a plan cannot fill the ranges: a search keeps to a trust region.
@@ -90,6 +113,10 @@ public:
 
     [[nodiscard]] const SearchProblem& problem() const { return problem_; }
     [[nodiscard]] ResponseValue evaluate(const Response& response, std::span<const double> x) const;
+    /// evaluate() without the error, which is what costs of a curve.
+    [[nodiscard]] ResponseValue evaluate_alone(const Response& response, std::span<const double> x) const;
+    /// evaluate() with the derivatives that searches follow.
+    [[nodiscard]] ResponseSlopes slopes(const Response& response, std::span<const double> x) const;
     /// Objectives, limits and the chance that these hold.
     [[nodiscard]] Candidate describe(std::span<const double> x) const;
 
@@ -128,17 +155,36 @@ public:
     [[nodiscard]] std::string unit_of(const Response& response) const;
 
 private:
+    struct BoundCurve {
+        CurveAsked asked;
+        std::shared_ptr<const CurveForces> nodes;  ///< without forces
+        const Surrogate *lift = nullptr, *moment = nullptr;
+    };
     struct Bound {  ///< a response prepared for evaluation
         const Surrogate* surrogate = nullptr;
         std::vector<double> weights;
         std::vector<std::vector<double>> points;  ///< templates, SI; searched variables are filled in
         std::vector<std::size_t> filled;          ///< surrogate variable of each searched one (npos: none)
+        std::vector<std::size_t> runs;            ///< points that runs of a design tell of
+        std::size_t told = 0;                     ///< the point whose error stands for the response's
+        double size = 1;                          ///< what is a large change of the response, SI
+        std::optional<BoundCurve> curve;
+
+        [[nodiscard]] std::vector<double> filled_point(std::size_t point, std::span<const double> x) const;
+        [[nodiscard]] std::vector<std::vector<double>> filled_points(std::span<const double> x) const;
     };
     struct OnTheCube;
+    enum class Errors { none, stated };
     [[nodiscard]] Bound bind(const Response& response) const;
-    [[nodiscard]] ResponseValue value(const Bound& bound, std::span<const double> x) const;
-    void value_with_slopes(const Bound& bound, std::span<const double> x, ResponseValue& value,
-                           std::vector<double>& by_value, std::vector<double>& by_sigma) const;
+    [[nodiscard]] const Surrogate& surrogate_of(const Response& response, const std::string& quantity) const;
+    void bind_curve(const CurveAsked& asked, const std::vector<double>& point, Bound& bound) const;
+    [[nodiscard]] ResponseValue value(const Bound& bound, std::span<const double> x, Errors errors) const;
+    [[nodiscard]] static ResponseValue curve_value(const Bound& bound, std::span<const double> x, Errors errors);
+    [[nodiscard]] ResponseSlopes value_with_slopes(const Bound& bound, std::span<const double> x, Errors errors) const;
+    void slopes_of_curve(const Bound& bound, std::span<const double> x, std::vector<double>& by_value) const;
+    void slopes_of_sigma(const Bound& bound, std::span<const double> x, std::vector<double>& by_sigma) const;
+    [[nodiscard]] bool has_curves() const;
+    [[nodiscard]] std::size_t starts(std::size_t an_axis, std::size_t most) const;
     [[nodiscard]] double cost_of(const Objective& objective, double value) const;
     [[nodiscard]] double log_acquisition(std::span<const double> x, double best, const NextOptions& options,
                                          Candidate* described) const;

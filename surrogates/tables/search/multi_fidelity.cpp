@@ -1,6 +1,7 @@
 #include "surrogates/tables/search/multi_fidelity.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -138,6 +139,35 @@ GpPrediction MultiFidelity::at(std::span<const double> x, std::size_t level, boo
             own.mean_slope[a] += below.mean_slope[a];
             own.variance_slope[a] += rho * rho * below.variance_slope[a];
         }
+    }
+    return own;
+}
+
+GpMeans MultiFidelity::means(std::span<const double> x, std::size_t level, bool slopes) const {
+    const std::size_t points = x.size() / axes_;
+    std::vector<double> h, dh;
+    GpMeans below;
+    if (level > 0) {
+        below = means(x, level - 1, slopes);
+    }
+    for (std::size_t i = 0; i < points; ++i) {
+        if (level > 0) {
+            h.insert(h.end(), {offset_spread, factor_spread * below.mean[i]});
+            dh.resize(slopes ? 2 * (i + 1) * axes_ : 0, 0.0);
+            for (std::size_t a = 0; slopes && a < axes_; ++a) {
+                dh[(2 * i + 1) * axes_ + a] = factor_spread * below.slope[i * axes_ + a];
+            }
+            continue;
+        }
+        std::vector<double> slope;
+        const std::vector<double> one = trend(x.subspan(i * axes_, axes_), 0, slopes ? &slope : nullptr);
+        h.insert(h.end(), one.begin(), one.end());
+        dh.insert(dh.end(), slope.begin(), slope.end());
+    }
+    GpMeans own = processes_[level].means(x, h, dh);
+    if (level > 0) {
+        std::transform(own.mean.begin(), own.mean.end(), below.mean.begin(), own.mean.begin(), std::plus<>());
+        std::transform(own.slope.begin(), own.slope.end(), below.slope.begin(), own.slope.begin(), std::plus<>());
     }
     return own;
 }

@@ -47,6 +47,8 @@ public:
     [[nodiscard]] GpPrediction at(std::span<const double> x, bool slopes = false) const {
         return at(x, levels() - 1, slopes);
     }
+    /// The means of at() alone, of several points at once: x [point * axes].
+    [[nodiscard]] GpMeans means(std::span<const double> x, std::size_t level, bool slopes = false) const;
     /// Covariance of a level at several points: x [point * axes] -> [i * points + j].
     [[nodiscard]] std::vector<double> covariance(std::span<const double> x, std::size_t level) const;
 

@@ -272,22 +272,41 @@ SurrogatePrediction Surrogate::at(std::span<const double> x, bool slopes) const 
 
 SurrogatePrediction Surrogate::sum(std::span<const double> weights,
                                    const std::vector<std::vector<double>>& points) const {
-    std::vector<double> x;
+    const SurrogateCurve curve = along(points, With::covariance);
     SurrogatePrediction result;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::vector<double> one = scaled(points[i]);
-        result.value += weights[i] * (middle_ + spread_ * process_.at(one).mean);
-        x.insert(x.end(), one.begin(), one.end());
-    }
-    const std::vector<double> c = process_.covariance(x, process_.levels() - 1);
     double variance = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
+        result.value += weights[i] * curve.value[i];
         for (std::size_t j = 0; j < points.size(); ++j) {
-            variance += weights[i] * weights[j] * c[i * points.size() + j];
+            variance += weights[i] * weights[j] * curve.covariance[i * points.size() + j];
         }
     }
-    result.sigma = error_factor_ * spread_ * std::sqrt(std::max(0.0, variance));
+    result.sigma = std::sqrt(std::max(0.0, variance));
     return result;
+}
+
+SurrogateCurve Surrogate::along(const std::vector<std::vector<double>>& points, With with) const {
+    std::vector<double> x;
+    for (const std::vector<double>& point : points) {
+        const std::vector<double> one = scaled(point);
+        x.insert(x.end(), one.begin(), one.end());
+    }
+    const std::size_t axes = variables_.size();
+    GpMeans means = process_.means(x, process_.levels() - 1, with == With::slopes);
+    SurrogateCurve curve{std::move(means.mean), std::move(means.slope), {}};
+    for (double& value : curve.value) {
+        value = middle_ + spread_ * value;
+    }
+    for (std::size_t i = 0; i < curve.slope.size(); ++i) {
+        curve.slope[i] *= spread_ * variables_[i % axes].scaled_slope(points[i / axes][i % axes]);
+    }
+    if (with == With::covariance) {
+        curve.covariance = process_.covariance(x, process_.levels() - 1);
+        for (double& c : curve.covariance) {
+            c *= std::pow(error_factor_ * spread_, 2);
+        }
+    }
+    return curve;
 }
 
 double Surrogate::sigma_after(std::span<const double> target, std::span<const double> x, std::size_t fidelity) const {

@@ -45,6 +45,13 @@ struct SurrogatePrediction {
     std::vector<double> sigma_slope;  ///< d sigma / d variable
 };
 
+/// Values at many points, SI.
+struct SurrogateCurve {
+    std::vector<double> value;
+    std::vector<double> slope;       ///< [point * variables + variable], where asked for
+    std::vector<double> covariance;  ///< [i * points + j] of the values' errors, where asked for
+};
+
 /// How it does on shapes that it did not see: every shape left out once with all its runs, parameters held. A shape's
 /// runs of the best fidelity that others have too are compared with the prediction of that fidelity; a shape that
 /// shares none is not checked.
@@ -85,6 +92,10 @@ public:
     /// Of a weighted sum of values at several points, e.g. a difference over the pitch: value and sigma.
     [[nodiscard]] SurrogatePrediction sum(std::span<const double> weights,
                                           const std::vector<std::vector<double>>& points) const;
+    /// Values along a curve, or anywhere: with their slopes, with the covariance of their errors (as stated: what
+    /// shapes left out showed is in it).
+    enum class With { values, slopes, covariance };
+    [[nodiscard]] SurrogateCurve along(const std::vector<std::vector<double>>& points, With with) const;
     /// Sigma at `target` after a further run at `x` of a fidelity (of which there are runs).
     [[nodiscard]] double sigma_after(std::span<const double> target, std::span<const double> x,
                                      std::size_t fidelity) const;

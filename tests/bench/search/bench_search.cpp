@@ -325,4 +325,67 @@ void candidates_with_gradients(benchmark::State& state) {
 }
 BENCHMARK(candidates_with_gradients)->Unit(benchmark::kMillisecond);
 
+/// A kick over the gap, or a window of pitch with its balance at each pitch and its moment, of 300 runs in six numbers
+/// of the shape, gap and pitch.
+struct CurveSearch {
+    Response response;
+    DesignSearch search;
+
+    static std::vector<SearchVariable> variables() {
+        auto all = eight_variables();
+        all[6].name = "gap";
+        all[7].name = "pitch";
+        return all;
+    }
+    static SearchProblem problem(const Response& response) {
+        return {unit_variables(6), {{response, Objective::Sense::maximise}}, {}, {}};
+    }
+    static std::map<std::string, Surrogate> surrogates() {
+        std::map<std::string, Surrogate> all;
+        for (const char* name : {"lift_force", "pitch_moment"}) {
+            all.emplace(name, Surrogate::fit(name, "1", variables(), many_runs(variables())));
+        }
+        return all;
+    }
+    explicit CurveSearch(Curve curve) : response(made(curve)), search(problem(response), surrogates()) {}
+    static Response made(Curve curve) {
+        Response r{"curve", "lift_force", {}, "", 0, CurveAsked{}};
+        r.curve->curve = curve;
+        r.curve->net_weight = 3;
+        r.curve->virtual_mass = 4;
+        if (curve == Curve::kick) {
+            r.conditions = {{"pitch", 0.5}};
+        } else {
+            r.curve->about = 0.5;
+            r.curve->most_moment = 5;
+            r.curve->restoring = true;
+            r.curve->moment = "pitch_moment";
+        }
+        return r;
+    }
+};
+
+enum class Ask { value, with_error, with_slopes };
+
+void candidates_of_curves(benchmark::State& state, Curve curve, Ask ask) {
+    const CurveSearch made(curve);
+    const auto points = sobol_plan(32, 6, 9);
+    for (auto _ : state) {
+        for (const Point& u : points) {
+            benchmark::DoNotOptimize(ask == Ask::value        ? made.search.evaluate_alone(made.response, u).value
+                                     : ask == Ask::with_error ? made.search.evaluate(made.response, u).sigma
+                                                              : made.search.slopes(made.response, u).by_sigma[0]);
+        }
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * points.size()));
+}
+BENCHMARK_CAPTURE(candidates_of_curves, kick_value, Curve::kick, Ask::value)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(candidates_of_curves, kick_with_error, Curve::kick, Ask::with_error)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(candidates_of_curves, kick_with_slopes, Curve::kick, Ask::with_slopes)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(candidates_of_curves, window_value, Curve::pitch_window, Ask::value)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(candidates_of_curves, window_with_error, Curve::pitch_window, Ask::with_error)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(candidates_of_curves, window_with_slopes, Curve::pitch_window, Ask::with_slopes)
+    ->Unit(benchmark::kMillisecond);
+
 }  // namespace
