@@ -30,17 +30,21 @@ std::string padded(std::string text, std::size_t size) {
 struct Event {
     double time;
     std::size_t sensor, index;
+    double order;  ///< s: time, by a clock that is never set back
 };
 
-/// All readings of all sensors in the order of time.
+/// All readings of all sensors as they came.
 std::vector<Event> in_order(const std::vector<LoggedSensor>& sensors) {
     std::vector<Event> all;
     for (std::size_t s = 0; s < sensors.size(); ++s) {
-        for (std::size_t i = 0; i < sensors[s].time.size(); ++i) {
-            all.push_back({sensors[s].time[i], s, i});
+        const std::vector<double>& time = sensors[s].time;
+        double order = time.empty() ? 0 : time.front();
+        for (std::size_t i = 0; i < time.size(); ++i) {
+            order += i > 0 ? std::max(time[i] - time[i - 1], 0.0) : 0;
+            all.push_back({time[i], s, i, order});
         }
     }
-    std::stable_sort(all.begin(), all.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+    std::stable_sort(all.begin(), all.end(), [](const Event& a, const Event& b) { return a.order < b.order; });
     return all;
 }
 

@@ -4,22 +4,15 @@
 #include <cmath>
 #include <set>
 
-#include "core/counted.h"
 #include "core/file.h"
 #include "core/heading.h"
-#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "surrogates/dynamics/logs/log_rows.h"
 
 namespace underbody::dynamics {
 
 namespace {
-
-bool makes_rows(const std::string& quantity) { return quantity == "gap" || quantity == "heave_velocity"; }
-
-bool is_held(const std::string& quantity) {
-    return quantity == "input_force" || quantity == "jet_voltage" || quantity == "jet_flow";
-}
 
 /// A channel's number to SI.
 core::Conversion to_si(const LogChannel& channel, const std::string& stated, const std::string& where) {
@@ -32,179 +25,6 @@ core::Conversion to_si(const LogChannel& channel, const std::string& stated, con
     }
     const core::Conversion conversion = core::conversion(unit, quantity.unit, channel.place);
     return {conversion.scale * channel.scale, conversion.offset + channel.offset};
-}
-
-/// Readings in ascending time; a clock that jumps and comes back loses the readings in between.
-void put_in_order(ChannelReadings& readings, const std::string& quantity, const std::string& log,
-                  core::Problems& problems) {
-    ChannelReadings kept;
-    std::size_t dropped = 0;
-    for (std::size_t i = 0; i < readings.time.size(); ++i) {
-        const double t = readings.time[i];
-        std::size_t count = kept.time.size();
-        if (!std::isfinite(t)) {
-            ++dropped;
-            continue;
-        }
-        // one reading too late among the others was the wrong one
-        if (count >= 2 && t <= kept.time[count - 1] && t > kept.time[count - 2]) {
-            kept.time.pop_back();
-            kept.value.pop_back();
-            ++dropped;
-            --count;
-        }
-        if (count > 0 && t <= kept.time[count - 1]) {
-            ++dropped;
-            continue;
-        }
-        kept.time.push_back(t);
-        kept.value.push_back(readings.value[i]);
-    }
-    readings = std::move(kept);
-    if (dropped > 0) {
-        problems.push_back({core::Problem::Severity::warning,
-                            core::counted(dropped, "reading") + " of " + quantity +
-                                " whose clock stands still or runs backwards " + (dropped == 1 ? "is" : "are") +
-                                " left out",
-                            core::Place{log, {}, {}, {}}});
-    }
-}
-
-double usual_step(const std::vector<double>& time) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-        steps.push_back(time[i] - time[i - 1]);
-    }
-    if (steps.empty()) {
-        return 0;
-    }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
-}
-
-/// The times of the rows: every reading of gap and velocity, every change of a held input.
-std::vector<double> row_times(const LogChannels& channels, const std::vector<ChannelReadings>& readings) {
-    std::vector<double> times;
-    double step = 0, first = -core::no_limit, last = core::no_limit;
-    for (std::size_t c = 0; c < readings.size(); ++c) {
-        const std::string& quantity = channels.channels[c].quantity;
-        if (makes_rows(quantity)) {
-            times.insert(times.end(), readings[c].time.begin(), readings[c].time.end());
-        }
-        if (quantity == "gap" && !readings[c].time.empty()) {
-            step = usual_step(readings[c].time);
-            first = readings[c].time.front();
-            last = readings[c].time.back();
-        }
-    }
-    for (std::size_t c = 0; c < readings.size(); ++c) {
-        const ChannelReadings& own = readings[c];
-        for (std::size_t i = 1; i < own.time.size() && is_held(channels.channels[c].quantity); ++i) {
-            if (own.value[i] != own.value[i - 1] && own.time[i] > first && own.time[i] < last) {
-                times.push_back(own.time[i]);
-            }
-        }
-    }
-    std::sort(times.begin(), times.end());
-    constexpr double same_row = 0.01;  // of the step
-    std::vector<double> rows;
-    for (const double t : times) {
-        if (rows.empty() || t - rows.back() > same_row * step) {
-            rows.push_back(t);
-        }
-    }
-    return rows;
-}
-
-/// Readings at their own rows alone.
-std::vector<double> at_rows(const ChannelReadings& own, const std::vector<double>& rows) {
-    std::vector<double> values(rows.size(), std::nan(""));
-    std::size_t row = 0;
-    for (std::size_t i = 0; i < own.time.size(); ++i) {
-        while (row + 1 < rows.size() && rows[row + 1] <= own.time[i]) {
-            ++row;
-        }
-        values[row] = own.value[i];
-    }
-    return values;
-}
-
-/// The last reading at or before each row; the first one before there was any.
-std::vector<double> held_at_rows(const ChannelReadings& own, const std::vector<double>& rows, double tolerance) {
-    std::vector<double> values(rows.size(), std::nan(""));
-    std::size_t i = 0;
-    for (std::size_t row = 0; row < rows.size() && !own.time.empty(); ++row) {
-        while (i + 1 < own.time.size() && own.time[i + 1] <= rows[row] + tolerance) {
-            ++i;
-        }
-        values[row] = own.value[i];
-    }
-    return values;
-}
-
-/// Mean of the readings nearer to this row than to its neighbours; linear between readings where there are none.
-std::vector<double> mean_at_rows(const ChannelReadings& own, const std::vector<double>& rows) {
-    std::vector<double> values(rows.size(), std::nan(""));
-    if (own.time.empty()) {
-        return values;
-    }
-    std::size_t i = 0;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        const double t = rows[row];
-        const double until =
-            row + 1 < rows.size() ? 0.5 * (t + rows[row + 1]) : t + (row > 0 ? 0.5 * (t - rows[row - 1]) : 0);
-        const double from = row > 0 ? 0.5 * (t + rows[row - 1]) : t - (until - t);
-        double sum = 0;
-        std::size_t count = 0;
-        for (; i < own.time.size() && own.time[i] < until; ++i) {
-            if (own.time[i] >= from && std::isfinite(own.value[i])) {
-                sum += own.value[i];
-                ++count;
-            }
-        }
-        if (count > 1) {
-            values[row] = sum / static_cast<double>(count);
-            continue;
-        }
-        const auto after = std::lower_bound(own.time.begin(), own.time.end(), t) - own.time.begin();
-        const auto next = static_cast<std::size_t>(after);
-        if (next == 0 || next == own.time.size()) {
-            values[row] = next == 0 ? own.value.front() : own.value.back();
-        } else {
-            const double share = (t - own.time[next - 1]) / (own.time[next] - own.time[next - 1]);
-            values[row] = own.value[next - 1] + share * (own.value[next] - own.value[next - 1]);
-        }
-    }
-    return values;
-}
-
-core::Table merged(const std::string& log, const LogChannels& channels, std::vector<ChannelReadings>& readings,
-                   const LogWindow& window, core::Problems& problems) {
-    for (std::size_t c = 0; c < readings.size(); ++c) {
-        const LogChannel& channel = channels.channels[c];
-        put_in_order(readings[c], channel.quantity, log, problems);
-        if (readings[c].time.empty()) {
-            throw core::InputError(
-                "range",
-                "no reading of " + channel.quantity + " in the log" +
-                    (std::isfinite(window.begin) || std::isfinite(window.end) ? " between begin and end" : ""),
-                channel.place, "`underbody info` says from when to when each message was logged");
-        }
-    }
-    const std::vector<double> rows = row_times(channels, readings);
-    core::Table table;
-    table.source = log;
-    table.add_numbers("time", "s", rows);
-    const double tolerance = rows.size() > 1 ? 0.01 * usual_step(rows) : 0;
-    for (std::size_t c = 0; c < readings.size(); ++c) {
-        const std::string& quantity = channels.channels[c].quantity;
-        table.add_numbers(quantity, core::find_quantity(quantity)->unit,
-                          makes_rows(quantity) ? at_rows(readings[c], rows)
-                          : is_held(quantity)  ? held_at_rows(readings[c], rows, tolerance)
-                                               : mean_at_rows(readings[c], rows));
-    }
-    return table;
 }
 
 std::string in_message(const LogChannel& channel) {
@@ -316,7 +136,7 @@ core::Table read_log_channels(const std::filesystem::path& log, const LogChannel
     const LogEnd end = read_log(log, sink, progress);
     problems.insert(problems.end(), end.problems.begin(), end.problems.end());
     sink.check_all_found(log.string(), end);
-    return merged(log.string(), channels, sink.readings(), window, problems);
+    return rows_of(log.string(), channels, sink.readings(), window, problems);
 }
 
 namespace {
@@ -448,7 +268,7 @@ core::Table read_csv_channels(const std::filesystem::path& file, const LogChanne
     const LogChannels own = channels.with_csv_clock();
     ChannelSink sink(own, window);
     send_csv(read_with_stated_units(file, own), own, true, sink);
-    return merged(file.string(), own, sink.readings(), window, problems);
+    return rows_of(file.string(), own, sink.readings(), window, problems);
 }
 
 }  // namespace underbody::dynamics

@@ -48,8 +48,10 @@ struct LogWindow {
 /// jet_voltage, jet_flow), at their own times, s since the log's start; readings within a hundredth of the gap's usual
 /// step share a row. Where a gap or velocity has no reading the value is NaN; inputs are held; other quantities are the
 /// mean of their readings about the row where they are logged faster, linear between them where slower, and held
-/// beyond their ends. Throws core::InputError: a message or field that is not in the log (with the nearest name), or
-/// that is there and cannot be read (with the reason), a unit of another dimension, nothing within the window.
+/// beyond their ends. Where the clock was set back for good (in all channels as often) rows go on with the times that
+/// it had then; else readings whose clock runs backwards are left out, with a warning. Throws core::InputError: a
+/// message or field that is not in the log (with the nearest name), or that is there and cannot be read (with the
+/// reason), a unit of another dimension, nothing within the window.
 core::Table read_log_channels(const std::filesystem::path& log, const LogChannels& channels, const LogWindow& window,
                               core::Problems& problems, core::Progress& progress = core::Progress::none());
 

@@ -12,6 +12,7 @@
 #include "surrogates/dynamics/model/file_formats.h"
 #include "surrogates/dynamics/model/measurement_setup.h"
 #include "surrogates/dynamics/model/repeated_runs.h"
+#include "surrogates/dynamics/model/run_pieces.h"
 #include "surrogates/dynamics/model/simulated_columns.h"
 
 namespace underbody::dynamics {
@@ -153,14 +154,6 @@ void check_time_series(const MeasuredRun& run, const std::string& motion) {
         if (std::isnan(time[i])) {
             throw core::InputError("missing", "a row without time", run.table.place(i, "time"),
                                    "leave the whole row out: gaps in time are fine");
-        }
-        if (i > 0 && time[i] <= time[i - 1]) {
-            throw core::InputError(
-                "order",
-                std::string("time ") + (time[i] == time[i - 1] ? "stands still" : "runs backwards") + " from " +
-                    core::format_number(time[i - 1], 9) + " s to " + core::format_number(time[i], 9) + " s",
-                run.table.place(i, "time"),
-                "if the logger started anew here, make two runs of the file; the other runs can be used as they are");
         }
     }
 }
@@ -408,14 +401,19 @@ Measurements read_measurements(const std::filesystem::path& folder) {
         }
         const std::string use = entry.choice("use", {"train", "test"}, "automatic");
         run.use = use == "train" ? RunUse::train : use == "test" ? RunUse::test : RunUse::automatic;
-        windows.push_back(window);
         run.table = read_run(run.file, channels, window, entry, data.problems);
         const bool time_series = data.kind == MeasurementKind::time_series,
                    of_jets = time_series && (data.motion == "surface" || data.motion == "body");
         time_series ? check_time_series(run, data.motion) : check_static(run);
         check_names(run, time_series, of_jets, data.problems);
         check_empty(run, data.problems);
-        data.runs.push_back(std::move(run));
+        for (MeasuredRun& piece : time_series ? pieces_of(run, data.problems) : std::vector{run}) {
+            windows.push_back(window);
+            data.runs.push_back(std::move(piece));
+        }
+    }
+    if (data.kind == MeasurementKind::time_series) {
+        count_from_first_reading(data);
     }
     gather(data.problems);
     drop_repeated_runs(data);

@@ -17,9 +17,10 @@ enum class RunUse { automatic, train, test };
 
 /// One file of measurements.
 struct MeasuredRun {
-    std::string name;  ///< the file's name without folder and ending; distinct within a data set
+    std::string name;  ///< the file's name without folder and ending, "NAME piece 2"; distinct within a data set
     std::filesystem::path file;
-    core::Table table;                         ///< SI, as read; missing values are NaN
+    core::Table table;                         ///< SI, as read; missing values are NaN; its times ascend
+    double clock_offset = 0;                   ///< s: times of the file less those of the table (run_pieces.h)
     std::map<std::string, double> conditions;  ///< SI; those of the data set, overridden by the run's own
     RunUse use = RunUse::automatic;
 
@@ -42,7 +43,7 @@ struct Measurements {
     std::string motion;
     std::filesystem::path folder;
     std::map<std::string, double> noise;  ///< declared standard deviation of a channel, SI
-    std::vector<MeasuredRun> runs;        ///< in the file's order
+    std::vector<MeasuredRun> runs;        ///< in the file's order; of one whose clock was set each piece
     core::Problems problems;              ///< what the reader noticed and went on with
 
     /// The declared noise of a channel; nothing when it must be estimated.
@@ -54,8 +55,8 @@ struct Measurements {
 /// Reads `folder/dataset.toml` (or the file itself) and all its runs.
 /// Throws core::InputError naming file and place: no dataset.toml, unknown kind or key (with the nearest known one), no
 /// run, a file named twice, a run that does not read, a time series without `time` and `gap` or with fewer than three
-/// rows, time that stands still or runs backwards, a static set without a measured force or moment, noise that is not
-/// positive.
+/// rows, time that stands still or runs backwards where it cannot be cut into pieces (run_pieces.h), a static set
+/// without a measured force or moment, noise that is not positive.
 Measurements read_measurements(const std::filesystem::path& folder);
 
 /// Names of the channels that a static set can measure: forces and moments.

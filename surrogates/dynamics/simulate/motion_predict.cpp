@@ -161,7 +161,7 @@ Prediction predict_motion_series(const Motion& motion, const Model& model, const
             for (std::size_t k = window.start; k <= window.end; ++k) {
                 names.push_back(data.runs[r].name);
                 number.push_back(static_cast<double>(w));
-                time.push_back(all[r].run->time()[k]);
+                time.push_back(all[r].run->time()[k] + data.runs[r].clock_offset);
                 for (std::size_t i = 0; i < states.size(); ++i) {
                     measured[i].push_back(readings.value[i].empty() ? std::nan("") : readings.value[i][k]);
                     predicted[i].push_back(all[r].run->reading(k, i, window.at(k)));

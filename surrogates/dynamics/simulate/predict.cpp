@@ -483,7 +483,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
         for (const RunPredictor::Row& row : all.rows[r]) {
             names.push_back(data.runs[r].name);
             window.push_back(static_cast<double>(row.window));
-            time.push_back(predictor.time()[row.sample]);
+            time.push_back(predictor.time()[row.sample] + data.runs[r].clock_offset);
             gap.push_back(predictor.gap()[row.sample]);
             gap_predicted.push_back(row.gap);
             gap_score.take(row.gap - gap.back());

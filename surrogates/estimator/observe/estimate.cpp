@@ -111,7 +111,7 @@ void estimate_extended(const std::vector<Prepared>& runs, const EstimateOptions&
         summary.mean_squared_innovation = r.mean_squared_innovation;
         summary.innovation_correlation = r.innovation_correlation;
         for (std::size_t k = 0; k < r.estimates.size(); ++k) {
-            add(columns, summary.name, runs[i].signals.time[k], r.estimates[k]);
+            add(columns, summary.name, runs[i].signals.time[k] + runs[i].run->clock_offset, r.estimates[k]);
             summary.outside += r.estimates[k].outside ? 1.0 / static_cast<double>(r.estimates.size()) : 0;
             squares += r.estimates[k].departure * r.estimates[k].departure;
             count += 1;
@@ -419,7 +419,7 @@ void estimate_linear(const std::vector<Prepared>& runs, const EstimateOptions& o
         }
         follow(f, u, [&](std::size_t k, const double*, const double* e) {
             const FilterEstimate row = row_of(f, sigma, out.noise, r.plant, u, k, e);
-            add(columns, summary.name, u.time[k], row);
+            add(columns, summary.name, u.time[k] + r.run->clock_offset, row);
             columns.note.back() = u.restart[k] && k > 0 ? "started anew" : row.outside ? "outside the table" : "";
         });
         out.runs.push_back(summary);

@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "core/file.h"
+#include "core/text.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 
@@ -122,6 +126,98 @@ TEST_F(MeasurementFiles, SayWhereTimeRunsBackwards) {
     EXPECT_NE(error.message().find("runs backwards"), std::string::npos);
     EXPECT_EQ(error.place().line, 4);
     EXPECT_NE(error.hint().find("two runs"), std::string::npos);
+}
+
+namespace {
+
+/// Rows of every 20 ms whose times are `clock` of them.
+std::string rows_by(const std::function<double(int)>& clock, int count = 60) {
+    std::string text = "time [s], gap [mm]\n";
+    for (int i = 0; i < count; ++i) {
+        text += core::format_number(clock(i)) + ", " + std::to_string(10 + i) + "\n";
+    }
+    return text;
+}
+
+constexpr double in_2025 = 1764337000;  // s since 1970
+
+}  // namespace
+
+TEST_F(MeasurementFiles, CutARunWhereItsClockWasSet) {
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\nuse = \"test\"\n");
+    // GPS sets the clock on from 1970: predict and discover took all memory
+    write("a.csv", rows_by([](int i) { return (i < 25 ? 0 : in_2025) + 0.02 * i; }));
+    Measurements data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 2U);
+    EXPECT_EQ(data.runs[1].name, "a piece 2");
+    EXPECT_EQ(data.runs[1].use, RunUse::test);
+    EXPECT_EQ(data.runs[0].table.rows(), 25U);
+    EXPECT_EQ(data.runs[1].values("gap").front(), 35e-3);
+    EXPECT_NEAR(data.runs[1].table.numbers("time").front(), 0.5, 1e-6) << "by the usual step";
+    EXPECT_NEAR(data.runs[1].clock_offset, in_2025, 1e-6);
+    ASSERT_EQ(data.problems.size(), 1U);
+    EXPECT_EQ(
+        data.problems[0].message,
+        "the clock was set on by 55.9 years before this row; its times are counted on from the row before: read as "
+        "a run of its own");
+    EXPECT_EQ(data.problems[0].place.line, 27);
+    // NTP sets it back by a second: it was an error
+    write("a.csv", rows_by([](int i) { return 5 + 0.02 * i - (i < 25 ? 0 : 1.013); }));
+    data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 2U);
+    EXPECT_NEAR(data.runs[1].table.numbers("time").front(), 5.5, 1e-9);
+    EXPECT_NE(data.problems[0].message.find("set back by 0.993 s"), std::string::npos) << data.problems[0].message;
+    // what is too short for a run is left out, and that is said
+    write("a.csv", rows_by([](int i) { return (i < 5 ? 0 : in_2025) + 0.02 * i; }));
+    data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 1U);
+    EXPECT_EQ(data.runs[0].name, "a");
+    EXPECT_EQ(data.runs[0].table.rows(), 55U);
+    EXPECT_NE(data.problems[0].message.find("the 5 rows from here"), std::string::npos) << data.problems[0].message;
+    // nothing long enough is left: said, as where times are in disorder
+    write("a.csv", rows_by([](int i) { return (i < 5 ? 0 : in_2025) + 0.02 * i; }, 10));
+    EXPECT_EQ(failure().message(), "time jumps from 0.08 s to 1764337000.1 s");
+    write("a.csv", rows_by([](int i) { return i % 2 == 0 ? i : i - 5; }));
+    EXPECT_NE(failure().message().find("runs backwards"), std::string::npos);
+}
+
+TEST_F(MeasurementFiles, CutARunWhereItPauses) {
+    write("dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n");
+    write("a.csv", rows_by([](int i) { return (i < 25 ? 0 : 3600) + 0.02 * i; }));
+    const Measurements data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 2U);
+    EXPECT_NEAR(data.runs[1].table.numbers("time").front(), 3600.5, 1e-9) << "an hour went by";
+    EXPECT_EQ(data.runs[1].clock_offset, 0);
+    EXPECT_EQ(data.problems[0].message, "nothing was logged for 3600 s before this row: read as a run of its own");
+    // a row a minute is slow and no pause; one of 30 s is bridged
+    write("a.csv", rows_by([](int i) { return 60.0 * i; }));
+    EXPECT_EQ(read_measurements(folder_.path()).runs.size(), 1U);
+    write("a.csv", rows_by([](int i) { return (i < 25 ? 0 : 30) + 0.02 * i; }));
+    EXPECT_EQ(read_measurements(folder_.path()).runs.size(), 1U);
+}
+
+TEST_F(MeasurementFiles, CountAbsoluteTimesFromTheFirstReading) {
+    write("dataset.toml",
+          "kind = \"time_series\"\n[[run]]\nfile = \"a.csv\"\n[[run]]\nfile = \"b.csv\"\n[[run]]\nfile = "
+          "\"c.csv\"\n");
+    write("a.csv", rows_by([](int i) { return in_2025 + 100.25 + 0.02 * i; }));
+    write("b.csv", rows_by([](int i) { return in_2025 + 0.5 + 0.03 * i; }));
+    write("c.csv", rows_by([](int i) { return 7 + 0.04 * i; }, 50));
+    const Measurements data = read_measurements(folder_.path());
+    ASSERT_EQ(data.runs.size(), 3U);
+    EXPECT_EQ(data.runs[0].table.numbers("time").front(), 100.25) << "one clock";
+    EXPECT_EQ(data.runs[1].table.numbers("time").front(), 0.5);
+    EXPECT_EQ(data.runs[1].clock_offset, in_2025);
+    EXPECT_EQ(data.runs[2].table.numbers("time").front(), 7);
+    ASSERT_EQ(data.problems.size(), 1U);
+    EXPECT_EQ(data.problems[0].severity, core::Problem::Severity::note);
+    EXPECT_EQ(data.problems[0].message,
+              "times are counted from 1764337000 s of the clock of the logs (2025-11-28 13:36:40 UTC if it counts from "
+              "1970)");
+    // written with too few digits
+    write("a.csv", rows_by([](int i) { return in_2025 + std::floor(0.02 * i); }));
+    EXPECT_EQ(failure().message(), "time stands still from 1764337000 s to 1764337000 s");
+    EXPECT_NE(failure().hint().find("twelve digits"), std::string::npos) << failure().hint();
 }
 
 TEST_F(MeasurementFiles, RefuseWhatCannotBeMeant) {

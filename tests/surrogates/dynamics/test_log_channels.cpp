@@ -109,6 +109,37 @@ TEST_F(LogChannels, EveryFormatGivesTheNumbersOfTheCsv) {
     }
 }
 
+TEST_F(LogChannels, AClockThatIsSetLosesNoReadings) {
+    const std::string csv = "kind = \"time_series\"\n[noise]\ngap = \"0.2 mm\"\n[[run]]\nfile = \"run.csv\"\n";
+    write("run.csv", rig_.csv());
+    const auto plain = dynamics::predict(Rig::model(), read(csv));
+    // seconds since 1970: the same numbers, told at the times of the file
+    const std::vector<double> time = rig_.time;
+    for (double& t : rig_.time) {
+        t += 1764337000;
+    }
+    write("run.csv", rig_.csv());
+    const auto absolute = dynamics::predict(Rig::model(), read(csv));
+    EXPECT_NEAR(absolute.channels[0].rmse, plain.channels[0].rmse, 1e-9);
+    EXPECT_EQ(absolute.table.numbers("time").back(), rig_.time.back());
+    // set on from 1970 to now half way (predict took all memory), or back by five seconds (half of the log was lost)
+    for (const double step : {1764337000.0, -5.0}) {
+        for (std::size_t i = 0; i < time.size(); ++i) {
+            rig_.time[i] = time[i] + (i < 300 ? 0 : step);
+        }
+        write("run.csv", rig_.csv());
+        write("run.mcap", test::mcap_bytes(rig_.sensors(true), ""));
+        for (const std::string& dataset : {csv, mapping("run.mcap", ros_gap, ros_push)}) {
+            const Measurements data = read(dataset);
+            ASSERT_EQ(data.runs.size(), 2U);
+            EXPECT_EQ(data.runs[0].table.rows() + data.runs[1].table.rows(), 600U);
+            const auto found = dynamics::predict(Rig::model(), data);
+            EXPECT_LT(found.channels[0].in_noise, 1.5);
+            EXPECT_NEAR(found.table.numbers("time").back(), rig_.time.back(), 1e-6);
+        }
+    }
+}
+
 TEST_F(LogChannels, ScaleSignUnitAndOffsetGiveTheQuantity) {
     auto sensors = rig_.sensors(false);
     for (std::size_t i = 0; i < rig_.time.size(); ++i) {

@@ -1,0 +1,259 @@
+#include "surrogates/dynamics/logs/log_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/counted.h"
+#include "core/no_limit.h"
+#include "core/units.h"
+
+namespace underbody::dynamics {
+
+namespace {
+
+bool makes_rows(const std::string& quantity) { return quantity == "gap" || quantity == "heave_velocity"; }
+
+bool is_held(const std::string& quantity) {
+    return quantity == "input_force" || quantity == "jet_voltage" || quantity == "jet_flow";
+}
+
+/// Readings in ascending time; a clock that jumps and comes back loses the readings in between.
+void put_in_order(ChannelReadings& readings, const std::string& quantity, const std::string& log,
+                  core::Problems& problems) {
+    ChannelReadings kept;
+    std::size_t dropped = 0;
+    for (std::size_t i = 0; i < readings.time.size(); ++i) {
+        const double t = readings.time[i];
+        std::size_t count = kept.time.size();
+        if (!std::isfinite(t)) {
+            ++dropped;
+            continue;
+        }
+        // one reading too late among the others was the wrong one
+        if (count >= 2 && t <= kept.time[count - 1] && t > kept.time[count - 2]) {
+            kept.time.pop_back();
+            kept.value.pop_back();
+            ++dropped;
+            --count;
+        }
+        if (count > 0 && t <= kept.time[count - 1]) {
+            ++dropped;
+            continue;
+        }
+        kept.time.push_back(t);
+        kept.value.push_back(readings.value[i]);
+    }
+    readings = std::move(kept);
+    if (dropped > 0) {
+        problems.push_back({core::Problem::Severity::warning,
+                            core::counted(dropped, "reading") + " of " + quantity +
+                                " whose clock stands still or runs backwards " + (dropped == 1 ? "is" : "are") +
+                                " left out",
+                            core::Place{log, {}, {}, {}}});
+    }
+}
+
+double usual_step(const std::vector<double>& time) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < time.size(); ++i) {
+        steps.push_back(time[i] - time[i - 1]);
+    }
+    if (steps.empty()) {
+        return 0;
+    }
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return *middle;
+}
+
+/// The times of the rows: every reading of gap and velocity, every change of a held input.
+std::vector<double> row_times(const LogChannels& channels, const std::vector<ChannelReadings>& readings) {
+    std::vector<double> times;
+    double step = 0, first = -core::no_limit, last = core::no_limit;
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        const std::string& quantity = channels.channels[c].quantity;
+        if (makes_rows(quantity)) {
+            times.insert(times.end(), readings[c].time.begin(), readings[c].time.end());
+        }
+        if (quantity == "gap" && !readings[c].time.empty()) {
+            step = usual_step(readings[c].time);
+            first = readings[c].time.front();
+            last = readings[c].time.back();
+        }
+    }
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        const ChannelReadings& own = readings[c];
+        for (std::size_t i = 1; i < own.time.size() && is_held(channels.channels[c].quantity); ++i) {
+            if (own.value[i] != own.value[i - 1] && own.time[i] > first && own.time[i] < last) {
+                times.push_back(own.time[i]);
+            }
+        }
+    }
+    std::sort(times.begin(), times.end());
+    constexpr double same_row = 0.01;  // of the step
+    std::vector<double> rows;
+    for (const double t : times) {
+        if (rows.empty() || t - rows.back() > same_row * step) {
+            rows.push_back(t);
+        }
+    }
+    return rows;
+}
+
+/// Readings at their own rows alone.
+std::vector<double> at_rows(const ChannelReadings& own, const std::vector<double>& rows) {
+    std::vector<double> values(rows.size(), std::nan(""));
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < own.time.size(); ++i) {
+        while (row + 1 < rows.size() && rows[row + 1] <= own.time[i]) {
+            ++row;
+        }
+        values[row] = own.value[i];
+    }
+    return values;
+}
+
+/// The last reading at or before each row; the first one before there was any.
+std::vector<double> held_at_rows(const ChannelReadings& own, const std::vector<double>& rows, double tolerance) {
+    std::vector<double> values(rows.size(), std::nan(""));
+    std::size_t i = 0;
+    for (std::size_t row = 0; row < rows.size() && !own.time.empty(); ++row) {
+        while (i + 1 < own.time.size() && own.time[i + 1] <= rows[row] + tolerance) {
+            ++i;
+        }
+        values[row] = own.value[i];
+    }
+    return values;
+}
+
+/// Mean of the readings nearer to this row than to its neighbours; linear between readings where there are none.
+std::vector<double> mean_at_rows(const ChannelReadings& own, const std::vector<double>& rows) {
+    std::vector<double> values(rows.size(), std::nan(""));
+    if (own.time.empty()) {
+        return values;
+    }
+    std::size_t i = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const double t = rows[row];
+        const double until =
+            row + 1 < rows.size() ? 0.5 * (t + rows[row + 1]) : t + (row > 0 ? 0.5 * (t - rows[row - 1]) : 0);
+        const double from = row > 0 ? 0.5 * (t + rows[row - 1]) : t - (until - t);
+        double sum = 0;
+        std::size_t count = 0;
+        for (; i < own.time.size() && own.time[i] < until; ++i) {
+            if (own.time[i] >= from && std::isfinite(own.value[i])) {
+                sum += own.value[i];
+                ++count;
+            }
+        }
+        if (count > 1) {
+            values[row] = sum / static_cast<double>(count);
+            continue;
+        }
+        const auto after = std::lower_bound(own.time.begin(), own.time.end(), t) - own.time.begin();
+        const auto next = static_cast<std::size_t>(after);
+        if (next == 0 || next == own.time.size()) {
+            values[row] = next == 0 ? own.value.front() : own.value.back();
+        } else {
+            const double share = (t - own.time[next - 1]) / (own.time[next] - own.time[next - 1]);
+            values[row] = own.value[next - 1] + share * (own.value[next] - own.value[next - 1]);
+        }
+    }
+    return values;
+}
+
+/// Readings of one clock: rows of all channels.
+core::Table merged_piece(const std::string& log, const LogChannels& channels, std::vector<ChannelReadings>& readings,
+                         core::Problems& problems) {
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        put_in_order(readings[c], channels.channels[c].quantity, log, problems);
+    }
+    const std::vector<double> rows = row_times(channels, readings);
+    core::Table table;
+    table.source = log;
+    table.add_numbers("time", "s", rows);
+    const double tolerance = rows.size() > 1 ? 0.01 * usual_step(rows) : 0;
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        const std::string& quantity = channels.channels[c].quantity;
+        table.add_numbers(quantity, core::find_quantity(quantity)->unit,
+                          makes_rows(quantity) ? at_rows(readings[c], rows)
+                          : is_held(quantity)  ? held_at_rows(readings[c], rows, tolerance)
+                                               : mean_at_rows(readings[c], rows));
+    }
+    return table;
+}
+
+/// Where a clock was set back for good: twenty readings follow that ascend and are all earlier than the one before.
+std::vector<std::size_t> set_backs(const std::vector<double>& time) {
+    constexpr std::size_t follow = 20;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 1; i + follow <= time.size(); ++i) {
+        const auto next = time.begin() + static_cast<std::ptrdiff_t>(i);
+        if (time[i] < time[i - 1] && std::is_sorted(next, next + follow) && time[i + follow - 1] < time[i - 1]) {
+            places.push_back(i);
+        }
+    }
+    return places;
+}
+
+/// The readings of each clock, where all channels were set back as often; else all of them, as they are.
+std::vector<std::vector<ChannelReadings>> by_clock(std::vector<ChannelReadings> readings) {
+    std::vector<std::vector<std::size_t>> places;
+    for (const ChannelReadings& own : readings) {
+        places.push_back(set_backs(own.time));
+        if (places.back().size() != places.front().size() || places.front().empty()) {
+            return {std::move(readings)};
+        }
+    }
+    std::vector<std::vector<ChannelReadings>> pieces(places.empty() ? 1 : places.front().size() + 1);
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            const std::size_t first = p == 0 ? 0 : places[c][p - 1];
+            const std::size_t last = p + 1 < pieces.size() ? places[c][p] : readings[c].time.size();
+            const auto part = [&](const std::vector<double>& of) {
+                return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(first),
+                                           of.begin() + static_cast<std::ptrdiff_t>(last));
+            };
+            pieces[p].push_back({part(readings[c].time), part(readings[c].value)});
+        }
+    }
+    return pieces;
+}
+
+/// The rows of one table after those of another with the same columns.
+core::Table joined(const core::Table& first, const core::Table& then) {
+    core::Table all;
+    all.source = first.source;
+    for (const core::Column& column : first.columns()) {
+        std::vector<double> numbers = column.numbers;
+        const std::vector<double>& more = then.numbers(column.name);
+        numbers.insert(numbers.end(), more.begin(), more.end());
+        all.add_numbers(column.name, column.unit, std::move(numbers));
+    }
+    return all;
+}
+
+}  // namespace
+
+core::Table rows_of(const std::string& log, const LogChannels& channels, const std::vector<ChannelReadings>& readings,
+                    const LogWindow& window, core::Problems& problems) {
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        const LogChannel& channel = channels.channels[c];
+        if (std::none_of(readings[c].time.begin(), readings[c].time.end(), [](double t) { return std::isfinite(t); })) {
+            throw core::InputError(
+                "range",
+                "no reading of " + channel.quantity + " in the log" +
+                    (std::isfinite(window.begin) || std::isfinite(window.end) ? " between begin and end" : ""),
+                channel.place, "`underbody info` says from when to when each message was logged");
+        }
+    }
+    std::optional<core::Table> table;
+    for (std::vector<ChannelReadings>& piece : by_clock(readings)) {
+        const core::Table own = merged_piece(log, channels, piece, problems);
+        table = table ? joined(*table, own) : own;
+    }
+    return *table;
+}
+
+}  // namespace underbody::dynamics
