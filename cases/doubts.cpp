@@ -1,5 +1,6 @@
 #include "cases/doubts.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -27,6 +28,29 @@ std::vector<std::string> doubts_of_model(const Study& study, const StudyResults&
         }
     }
     return doubts;
+}
+
+std::vector<std::string> warnings_of(const MeasurementSpec& measurement, const StudyResults& results) {
+    std::vector<std::string> warnings;
+    const auto take = [&](const nlohmann::json& result) {
+        for (const auto& problem : result.value("problems", nlohmann::json::array())) {
+            std::string message = problem.at("message");
+            if (problem.at("severity") == "warning" &&
+                std::find(warnings.begin(), warnings.end(), message) == warnings.end()) {
+                warnings.push_back(std::move(message));
+            }
+        }
+    };
+    if (const std::string* residual = results.document("residual/" + measurement.name)) {
+        const auto found = nlohmann::json::parse(*residual);  // kept: what is iterated stands in it
+        for (const auto& one : found.value("residuals", nlohmann::json::array())) {
+            take(one);
+        }
+    }
+    if (const std::string* discovery = results.document("discovery/" + measurement.name)) {
+        take(nlohmann::json::parse(*discovery));
+    }
+    return warnings;
 }
 
 std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results) {

@@ -11,6 +11,10 @@ namespace underbody::cases {
 /// Sentences for a map of a model that a [[measurement]] of the study finds incomplete.
 std::vector<std::string> doubts_of_model(const Study& study, const StudyResults& results, const RegionSpec& region);
 
+/// What the steps of a [[measurement]] warn of (noise, runs outside a table, ...), each once; those of earlier versions
+/// hold none.
+std::vector<std::string> warnings_of(const MeasurementSpec& measurement, const StudyResults& results);
+
 /// Sentences for a table whose error is of a mesh study that does not converge.
 std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results);
 

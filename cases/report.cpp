@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "cases/code_version.h"
 #include "cases/doubts.h"
@@ -27,15 +28,22 @@ std::string shown(double value, const std::string& from, const std::string& to, 
     return std::isfinite(value) ? core::format_number(core::convert(value, from, to), digits) : "-";
 }
 
-double number_in(const json& object, const char* key) {
+/// A key that a result does not have is a defect of the step that made it.
+const json& part_of(const json& object, const char* key) {
     const auto found = object.find(key);
-    return found != object.end() && found->is_number() ? found->get<double>() : std::nan("");
+    if (found == object.end()) {
+        throw std::logic_error(std::string("a result for the report has no '") + key + "'");
+    }
+    return *found;
 }
 
-std::string text_in(const json& object, const char* key) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+/// NaN: not known.
+double number_in(const json& object, const char* key) {
+    const json& number = part_of(object, key);
+    return number.is_null() ? std::nan("") : number.get<double>();
 }
+
+std::string text_in(const json& object, const char* key) { return part_of(object, key).get<std::string>(); }
 
 class Report {
 public:
@@ -363,6 +371,9 @@ private:
                 for (const auto& line : residual->value("sentences", json::array())) {
                     page_.paragraph(line.get<std::string>());
                 }
+            }
+            for (const auto& warning : warnings_of(spec, engine_.results)) {
+                page_.warning(warning);
             }
             std::vector<HtmlPage::Picture> pictures;
             for (int i = 0; i < 8; ++i) {

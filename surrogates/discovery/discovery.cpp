@@ -7,9 +7,11 @@
 #include "core/file.h"
 #include "core/hash.h"
 #include "core/text.h"
+#include "surrogates/discovery/residual.h"
 #include "surrogates/discovery/static/load_cell.h"
 #include "surrogates/discovery/wording.h"
 #include "surrogates/dynamics/model/force_error.h"
+#include "surrogates/dynamics/model/lineage.h"
 #include "surrogates/dynamics/simulate/measured_motion.h"
 
 namespace underbody::discovery {
@@ -77,6 +79,18 @@ std::string as_large_as_the_tables_error(const dynamics::Model& model, const Dis
            "would tell.";
 }
 
+/// The model says of what was found what the data could not well tell it from.
+void say_ties(Discovery& result) {
+    std::vector<std::string> found;
+    for (const FoundEffect& effect : result.effects) {
+        found.push_back(effect.name);
+    }
+    const std::string names = verdict_names(result);
+    if (result.verdict == "effect" && names != list_of(found)) {
+        result.model.lineage.made_from.push_back(std::string(dynamics::tied_line) + names);
+    }
+}
+
 }  // namespace
 
 Discovery discover(const dynamics::Model& model, const dynamics::Measurements& measured, const DiscoverOptions& options,
@@ -106,6 +120,7 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
                                                  core::content_hash_of_file(run.file));
     }
     result.model.lineage.made_from.push_back("verdict: " + result.sentence);
+    say_ties(result);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
 }
@@ -267,12 +282,7 @@ nlohmann::json to_json(const Discovery& d) {
     }
     json["next_experiment"] = d.next_experiment;
     json["next_experiment_power"] = d.next_power;
-    json["problems"] = nlohmann::json::array();
-    for (const core::Problem& problem : d.problems) {
-        const bool note = problem.severity == core::Problem::Severity::note;
-        json["problems"].push_back(
-            {{"severity", note ? "note" : "warning"}, {"message", problem.message}, {"place", problem.place.text()}});
-    }
+    json["problems"] = json_of(d.problems);
     return json;
 }
 

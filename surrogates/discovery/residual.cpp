@@ -223,6 +223,16 @@ std::vector<Residual> measured_residual(const dynamics::Model& model, const dyna
                                                           : heave_residual(model, data, progress);
 }
 
+nlohmann::json json_of(const core::Problems& problems) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const core::Problem& problem : problems) {
+        const bool note = problem.severity == core::Problem::Severity::note;
+        all.push_back(
+            {{"severity", note ? "note" : "warning"}, {"message", problem.message}, {"place", problem.place.text()}});
+    }
+    return all;
+}
+
 nlohmann::json to_json(const Residual& residual) {
     nlohmann::json curves = nlohmann::json::array();
     for (const ResidualCurve& curve : residual.curves) {
@@ -234,11 +244,8 @@ nlohmann::json to_json(const Residual& residual) {
                           {"mean_sigma", curve.mean_sigma},
                           {"count", curve.count}});
     }
-    return {{"quantity", residual.quantity},
-            {"mean", residual.mean},
-            {"rms", residual.root_mean_square},
-            {"sigma", residual.sigma},
-            {"curves", curves}};
+    return {{"quantity", residual.quantity}, {"mean", residual.mean}, {"rms", residual.root_mean_square},
+            {"sigma", residual.sigma},       {"curves", curves},      {"problems", json_of(residual.problems)}};
 }
 
 }  // namespace underbody::discovery

@@ -44,4 +44,7 @@ std::vector<Residual> measured_residual(const dynamics::Model& model, const dyna
 
 nlohmann::json to_json(const Residual& residual);
 
+/// "severity" ("note" or "warning"), "message" and "place" of each.
+nlohmann::json json_of(const core::Problems& problems);
+
 }  // namespace underbody::discovery

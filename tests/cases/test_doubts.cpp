@@ -27,6 +27,22 @@ TEST(Doubts, AMapOfAModelThatTheRunsFindIncompleteSaysSo) {
                 HasSubstr("'rig' find this model incomplete: it lacks coulomb friction, thrust by gap"));
 }
 
+TEST(Doubts, WhatAMeasurementWarnsOfIsSaidOnce) {
+    const MeasurementSpec rig{"rig", "/s/model.toml", "/s/rig", true};
+    StudyResults results;
+    EXPECT_TRUE(warnings_of(rig, results).empty());
+    const std::string problems =
+        R"("problems": [{"severity": "warning", "message": "its noise is 3 times what is declared",
+        "place": ""}, {"severity": "note", "message": "8 runs", "place": ""}])";
+    results.documents.emplace_back("residual/rig", R"({"residuals": [{)" + problems + "}, {" + problems + "}]}");
+    results.documents.emplace_back("discovery/rig", "{" + problems + "}");
+    results.documents.emplace_back("residual/other", R"({"residuals": []})");
+    EXPECT_THAT(warnings_of(rig, results), testing::ElementsAre("its noise is 3 times what is declared"));
+    results.documents.front().second = R"({"residuals": [{}]})";  // of an earlier version
+    results.documents.erase(results.documents.begin() + 1);
+    EXPECT_TRUE(warnings_of(rig, results).empty());
+}
+
 TEST(Doubts, ATableSaysThatItsMeshStudyDiverges) {
     TableSpec table;
     table.quantity = "lift_force";

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/text.h"
+#include "surrogates/dynamics/model/lineage.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 
 namespace underbody::dynamics {
@@ -211,6 +212,15 @@ void check_model(Model& model, const core::TomlTable& root) {
         model.remarks.push_back({core::Problem::Severity::note,
                                  "no drag in heave: free motion will not settle unless an effect damps it",
                                  root.place("drag")});
+    }
+    for (const std::string& line : model.lineage.made_from) {
+        if (line.starts_with(tied_line)) {
+            model.remarks.push_back({core::Problem::Severity::warning,
+                                     "its data could not well tell what was found from other effects (" +
+                                         line.substr(tied_line.size()) +
+                                         "): where nothing was measured the model may be wrong",
+                                     root.place("lineage")});
+        }
     }
 }
 

@@ -150,6 +150,23 @@ TEST_F(ModelFile, WritesItselfBackWithEffectsTablesAndLineage) {
               core::read_file(other.path() / "twice" / "model.toml"));
 }
 
+TEST_F(ModelFile, SaysWhatItsDataCouldNotTellApart) {
+    const auto warned = [](const Model& model) {
+        return std::count_if(model.remarks.begin(), model.remarks.end(), [](const core::Problem& remark) {
+            return remark.message.find("(coulomb_friction, or linear_damping)") != std::string::npos;
+        });
+    };
+    Model found = read(plain);
+    EXPECT_EQ(warned(found), 0);
+    found.lineage.made_from = {"verdict: ...", "tied: coulomb_friction, or linear_damping"};
+    core::TemporaryFolder other;
+    write_model(found, other.path() / "found" / "model.toml");
+    const Model again = read_model(other.path() / "found" / "model.toml");
+    EXPECT_EQ(warned(again), 1);
+    write_model(again, other.path() / "twice" / "model.toml");
+    EXPECT_EQ(warned(read_model(other.path() / "twice" / "model.toml")), 1);
+}
+
 TEST_F(ModelFile, EveryEffectIsNeutralAtItsNeutralValuesAndSurvivesTheFile) {
     const Model model = read(plain);
     Conditions point;
