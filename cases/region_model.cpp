@@ -20,8 +20,16 @@ namespace {
 void remark_on_speeds(dynamics::Model& model, const Study& study, const RegionSpec& spec, const StudyResults& results) {
     for (const auto& name : spec.forces) {
         const TableSpec& table = *study.find_table(name);
-        const auto speed = speed_of(table, table_points(table, results));
+        const core::Table points = table_points(table, results);
+        const auto speed = speed_of(table, points);
         const double held = model.conditions.get(dynamics::Channel::speed, speed.value_or(0));
+        if (points.find("speed") == nullptr && model.conditions.has(dynamics::Channel::speed)) {
+            model.remarks.push_back({core::Problem::Severity::warning,
+                                     "no case of the table '" + name +
+                                         "' states a speed, nor does [reference]: its force is taken as that at " +
+                                         core::format_number(held, 6) + " m/s, the model's",
+                                     {model.name, {}, {}, {}}});
+        }
         if (speed && std::abs(held - *speed) > 1e-9 * *speed) {
             model.remarks.push_back(
                 {core::Problem::Severity::warning,

@@ -265,6 +265,9 @@ core::Table loads_table(const Study& study, const std::vector<CaseLoads>& loads)
         verdicts.push_back(one.settled);
         const Case& entry = study.cases[one.entry];
         auto& row = rows.emplace_back(postproc::LoadsRow{entry.conditions.texts, entry.conditions.numbers, {}});
+        if (const auto speed = study.speed_of(entry); speed && !entry.conditions.number("speed")) {
+            row.numbers.emplace_back("speed", *speed);
+        }
         for (auto& [name, value] : row.numbers) {
             first_with.emplace(name, &entry.conditions);
             if (entry.mean && name == "time") {

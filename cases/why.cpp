@@ -126,7 +126,7 @@ private:
     /// A file that was exported from the study, here or elsewhere. False: its head says nothing, or of another study.
     bool from_file(const fs::path& file) {
         const Head head = head_of(file);
-        if (!head.id.empty()) {
+        if (!head.id.empty() && !head.again) {
             return from_id(file, head);
         }
         if (head.content.empty()) {
@@ -142,6 +142,9 @@ private:
                 walk(*one);
                 return true;
             }
+        }
+        if (head.again && !head.id.empty()) {
+            return from_id(file, head);
         }
         throw core::InputError("missing",
                                "the file was made from one with the content " + head.content +
@@ -178,6 +181,10 @@ private:
 
     /// A head says of what a file was made, not that nobody changed the rest.
     void compare_with_exports(const fs::path& file, const Head& head) {
+        if (head.again) {
+            way_.notes.push_back("the file was exported anew from one that held " + shown(head.result));
+            return;
+        }
         const std::string bytes = core::read_file(file);
         bool any = false;
         for (const auto& stored : stored_results()) {

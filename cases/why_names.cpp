@@ -49,12 +49,16 @@ Head head_of(const fs::path& file) {
     const std::string bytes = core::read_file(file);
     std::smatch found;
     static const std::regex result("^([a-z]+)/([^\n]{1,200}?) ([0-9a-f]{16})");
-    if (const std::string line = behind(bytes, "Result: "); std::regex_search(line, found, result)) {
+    std::string line = behind(bytes, "Result: ");
+    head.again = line.empty();
+    line = head.again ? behind(bytes, "Which holds result: ") : line;
+    if (std::regex_search(line, found, result)) {
         head.result = {found[1], found[2]};
         head.id = found[3];
     }
     static const std::regex content("^([0-9a-f]{16,})\\)");
-    if (const std::string line = behind(bytes, "(content "); std::regex_search(line, found, content)) {
+    line = behind(bytes, "(content ");
+    if (std::regex_search(line, found, content)) {
         head.content = found[1];
     }
     return head;

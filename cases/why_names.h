@@ -21,6 +21,7 @@ bool is_called(const Name& name, const std::string& what);
 struct Head {
     Name result;
     std::string id;       ///< of the result
+    bool again = false;   ///< of the result that the file which this one was exported from held
     std::string content;  ///< hash of the file that it was made from
 };
 Head head_of(const std::filesystem::path& file);

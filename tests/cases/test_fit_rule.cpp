@@ -127,6 +127,27 @@ TEST_F(FitRule, AModelAtAnotherSpeedSaysThatItsForceIsScaled) {
     EXPECT_TRUE(region_model(study, region, results).forces.at(0).scales.empty());
 }
 
+TEST_F(FitRule, AForceOfASpeedThatNobodyStatesSaysSo) {
+    core::Table without;
+    for (const auto& column : results.loads.columns()) {
+        if (column.is_text()) {
+            without.add_text(column.name, column.text);
+        } else if (column.name != "speed") {
+            without.add_numbers(column.name, column.unit, column.numbers);
+        }
+    }
+    const auto said = [&] {
+        const dynamics::Model model = region_model(study, region, results);
+        return std::count_if(model.remarks.begin(), model.remarks.end(), [](const core::Problem& remark) {
+            return remark.message.find("no case of the table 'lift' states a speed, nor does [reference]") == 0;
+        });
+    };
+    EXPECT_EQ(said(), 0);
+    results.loads = without;
+    study.tables[0].where.numbers.clear();
+    EXPECT_EQ(said(), 1);
+}
+
 TEST_F(FitRule, WhereAndAxesMayBeTextsOrTables) {
     core::write_file(folder.path() / "a-h1.csv", "x");
     const std::string head =

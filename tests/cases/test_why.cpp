@@ -161,6 +161,27 @@ TEST_F(Why, WhatAllCasesOfATableShareGoesWithIt) {
     }
 }
 
+/// [reference] says the speed of cases that do not: their tables hold for it, and a map scales its force from it.
+TEST_F(Why, ASpeedThatOnlyTheReferenceSaysIsThatOfTheTables) {
+    std::string text = core::read_file(folder / "study.toml");
+    for (const std::string& away : {std::string("conditions.speed = \"0.5 m/s\"\n"), std::string(", speed = 0.5")}) {
+        ASSERT_NE(text.find(away), std::string::npos);
+        text.erase(text.find(away), away.size());
+    }
+    core::write_file(folder / "study.toml", text);
+    run();
+    const fs::path model = folder / "report" / "models" / "map" / "model.toml";
+    const fs::path report = folder / "report" / "index.html";
+    EXPECT_THAT(core::read_file(model), Not(HasSubstr("scale.speed")));
+    EXPECT_THAT(core::read_file(report), HasSubstr("states a speed, nor does [reference]"));
+    core::write_file(folder / "study.toml", text + "[reference]\nspeed = \"0.4 m/s\"\n");
+    run();
+    EXPECT_THAT(core::read_file(model), HasSubstr("scale.speed = { reference = \"0.4 m/s\", exponent = 2 }"));
+    EXPECT_THAT(core::read_file(folder / "report" / "exports" / "lift.h"), HasSubstr("Holds for speed = 0.4 m/s"));
+    EXPECT_THAT(core::read_file(report), Not(HasSubstr("nor does [reference]")));
+    EXPECT_THAT(core::read_file(report), HasSubstr("(0.5/0.4)^2"));
+}
+
 TEST_F(Why, TheMapSaysWhereItsModelIsNotTheOneOfTheTable) {
     EXPECT_THAT(core::read_file(folder / "report" / "index.html"), Not(HasSubstr("for a net weight of")));
     std::string text = core::read_file(folder / "glide.toml");
@@ -231,6 +252,25 @@ TEST_F(Why, AnExportedFileKnowsItsResultAlsoWhenItHasBeenMadeAnewSince) {
         ADD_FAILURE() << "it is of another study";
     } catch (const core::InputError& error) {
         EXPECT_THAT(error.message(), HasSubstr("which the store of this study does not have"));
+    }
+}
+
+/// From file to file: what a table was first is said in each, and is the way back.
+TEST_F(Why, AFileThatWasExportedAgainAndAgainKnowsItsResult) {
+    fs::path from = folder / "report" / "exports" / "lift.csv";
+    const std::string id = why("exports/lift.csv").origins.front().id;
+    for (const char* format : {"json", "csv", "c"}) {
+        const fs::path to = scratch.path() / (std::string("again.") + (format == std::string("c") ? "h" : format));
+        (void)tables::export_table(tables::ForceTable::read(from.string(), "lift_force"), format, to, {});
+        EXPECT_THAT(core::read_file(to), HasSubstr("Which holds result: table/lift " + id)) << format;
+        const Way way = why(to.string());
+        const Origin* table = find(way, "table", "lift");
+        ASSERT_NE(table, nullptr) << format;
+        EXPECT_EQ(table->id, id) << format;
+        ASSERT_EQ(way.notes.size(), 1U) << format;
+        EXPECT_THAT(way.notes.front(), testing::AnyOf(HasSubstr("made of exports/lift.csv of this study"),
+                                                      HasSubstr("exported anew from one that held table/lift")));
+        from = to;
     }
 }
 

@@ -129,9 +129,15 @@ std::string made_from(const ForceTable& table) {
                          : ": " + std::to_string(table.points().rows()) + " points, fitted as " + table.kind());
 }
 
-/// What a file says of one table, and warns of; `first`: of all in the file.
-std::vector<std::string> told_of(const ForceTable& table, const ForceTable& first, ExportQuantity& quantity) {
+/// What a file says of one table, and warns of; `first`: of all in the file; `origins`: further lines on where it comes
+/// from.
+std::vector<std::string> told_of(const ForceTable& table, const ForceTable& first,
+                                 const std::vector<std::string>& origins, ExportQuantity& quantity) {
     quantity.told = {"Which was made" + made_from(table).substr(4)};
+    for (std::string line : origins) {
+        line.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(line.front())));
+        quantity.told.push_back("Which holds " + line);
+    }
     std::vector<std::string> said = table.impl().told;
     for (auto&& line : other_constants(first)) {
         said.push_back(std::move(line));
@@ -217,7 +223,7 @@ void write_origin(ExportGrid& grid, const std::vector<ForceTable>& tables, const
     lines.insert(lines.end(), options.provenance.begin(), options.provenance.end());
     write_axes(grid);
     for (std::size_t i = 0; i < tables.size(); ++i) {
-        for (auto& line : told_of(tables[i], tables.front(), grid.quantities[i])) {
+        for (auto& line : told_of(tables[i], tables.front(), options.provenance, grid.quantities[i])) {
             if (std::find(lines.begin(), lines.end(), line) == lines.end()) {
                 lines.push_back(std::move(line));
             }
