@@ -10,10 +10,22 @@ namespace underbody::cases {
 
 namespace {
 
-/// A number stays one; all else becomes a string ("0.28 N").
+/// True of ["3 mm", "5 mm"] and { gap = "3 mm" }.
+bool is_list_or_table(const std::string& text) {
+    if (!text.starts_with('[') && !text.starts_with('{')) {
+        return false;
+    }
+    try {
+        return core::read_toml_text("value = " + text, "").has("value");
+    } catch (const core::Error&) {
+        return false;  // a text like "[draft] of a study"
+    }
+}
+
+/// A number, a list and an inline table stay what they are; all else becomes a string ("0.28 N").
 std::string toml_value(const std::string& text) {
     const bool word = text == "true" || text == "false";
-    return word || core::parse_number(text) ? text : core::toml_string(text);
+    return word || core::parse_number(text) || is_list_or_table(text) ? text : core::toml_string(text);
 }
 
 std::string key_of_line(std::string_view line) {
@@ -21,20 +33,39 @@ std::string key_of_line(std::string_view line) {
     return equal == std::string_view::npos ? std::string() : std::string(core::trimmed(line.substr(0, equal)));
 }
 
-/// The comment behind a value, with the space before it; "" when there is none.
-std::string comment_of(std::string_view line) {
+/// What a line holds outside quotes.
+struct Outside {
+    std::string comment;  ///< behind the value, with the space before it; "" when there is none
+    int opened = 0;       ///< brackets that it opens and does not close
+};
+
+Outside outside_quotes(std::string_view line) {
+    Outside out;
     char quote = 0;
     for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
         if (quote != 0) {
-            quote = line[i] == quote ? char(0) : quote;
-        } else if (line[i] == '"' || line[i] == '\'') {
-            quote = line[i];
-        } else if (line[i] == '#') {
+            quote = c == quote ? char(0) : quote;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '#') {
             const auto end = line.find_last_not_of(" \t", i - 1);
-            return std::string(line.substr(end + 1));
+            out.comment = line.substr(end + 1);
+            break;
         }
+        out.opened += quote != 0 ? 0 : c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
     }
-    return {};
+    return out;
+}
+
+/// The last line of a value that begins in line `first`: a list may go over several.
+std::size_t last_line_of_value(const std::vector<std::string>& lines, std::size_t first) {
+    int open = outside_quotes(lines[first]).opened;
+    std::size_t last = first;
+    while (open > 0 && last + 1 < lines.size()) {
+        open += outside_quotes(lines[++last]).opened;
+    }
+    return last;
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -61,7 +92,7 @@ struct Block {
 Block block_at(const std::vector<std::string>& lines, std::size_t begin) {
     std::size_t end = begin;
     while (end < lines.size() && !core::trimmed(lines[end]).starts_with("[")) {
-        ++end;
+        end = last_line_of_value(lines, end) + 1;
     }
     return {begin, end};
 }
@@ -71,12 +102,16 @@ void set_in(std::vector<std::string>& lines, const Block& block, const std::stri
     const std::string line = key + " = " + toml_value(value);
     std::size_t behind = block.begin;
     for (std::size_t i = block.begin; i < block.end; ++i) {
+        const std::size_t last = last_line_of_value(lines, i);
         if (key_of_line(lines[i]) == key) {
-            lines[i] = line + comment_of(lines[i]);
+            lines[i] = line + outside_quotes(lines[last]).comment;
+            const auto place = lines.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+            lines.erase(place, place + static_cast<std::ptrdiff_t>(last - i));
             return;
         }
         const auto text = core::trimmed(lines[i]);
-        behind = text.empty() || text.starts_with("#") ? behind : i + 1;
+        behind = text.empty() || text.starts_with("#") ? behind : last + 1;
+        i = last;
     }
     lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(behind), line);
 }

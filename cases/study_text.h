@@ -6,7 +6,8 @@
 namespace underbody::cases {
 
 /// The text with `key = value` in the [[kind]] of that name, at the place where the key stands, else behind its last.
-/// A number or true and false stay what they are, all else becomes a string. Throws core::UsageError: there is no such
+/// A number, true and false, a list and an inline table stay what they are, all else becomes a string; a value of
+/// several lines is replaced as a whole. Throws core::UsageError: there is no such
 /// [[kind]] (with the nearest name).
 std::string with_value(const std::string& text, const std::string& kind, const std::string& name,
                        const std::string& key, const std::string& value);

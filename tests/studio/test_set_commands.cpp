@@ -145,5 +145,33 @@ TEST(SetCommands, TablesThatAStudyHasOnceAreSetAndWhatRestsOnThemIsStale) {
     EXPECT_EQ(states(), std::set<std::string>{"changed"});
 }
 
+TEST(SetCommands, AListAndATableStayWhatTheyAre) {
+    const core::TemporaryFolder folder;
+    write_small_study(folder.path());
+    const std::string study = folder.path().string();
+    const fs::path file = folder.path() / "study.toml";
+    const auto set = [&](const std::string& assignment) {
+        const auto result = run_underbody({"study", "set", study, assignment});
+        EXPECT_EQ(result.exit_code, 0) << assignment << result.errors;
+        return core::read_file(file);
+    };
+    EXPECT_NE(set("table.lift.exports=[\"csv\", \"json\"]").find("\nexports = [\"csv\", \"json\"]\n"),
+              std::string::npos);
+    EXPECT_NE(set("table.lift.where={ variant = \"cube\" }").find("\nwhere = { variant = \"cube\" }\n"),
+              std::string::npos);
+    EXPECT_NE(set("title=[draft] of a cube").find("title = \"[draft] of a cube\""), std::string::npos);
+    // A list over several lines is replaced as a whole; what stands behind it is found.
+    std::string text = core::read_file(file);
+    const std::string one = "exports = [\"csv\", \"json\"]";
+    text.replace(text.find(one), one.size(), "exports = [  # for the rig\n  \"csv\",\n  \"json\",\n]  # both");
+    core::write_file(file, text);
+    text = set("table.lift.virtual_mass=5 kg");
+    EXPECT_NE(text.find("]  # both\n"), std::string::npos) << text;
+    text = set("table.lift.exports=[\"c\"]");
+    EXPECT_NE(text.find("\nexports = [\"c\"]  # both\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\"json\""), std::string::npos) << text;
+    EXPECT_NE(text.find("virtual_mass = \"5 kg\""), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace underbody::test
