@@ -181,11 +181,7 @@ int run_at(Shell& shell, const AtCommand& command) {
 
 struct EquilibriaCommand {
     TableOptions table;
-    std::string weight;
-    std::string mass;
-    std::string damping;
-    std::string held;
-    std::string picture;
+    std::string weight, mass, damping, held, picture;
     double scale = 1;
     int draws = tables::usual_draws;
 };
@@ -215,7 +211,7 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
     if (e.frequency > 0) {
         text += ", " + with_error(e.frequency, 4, e.frequency_sigma) + " Hz";
     }
-    if (e.damping_ratio > 0) {
+    if (e.damping_ratio != 0) {
         text += ", damping ratio " + core::format_number(e.damping_ratio, 3);
     }
     if (e.stability == tables::Stability::stable) {
@@ -261,7 +257,9 @@ Balance balance_of_model(Shell& shell, const dynamics::Model& model, const Equil
     if (!command.mass.empty()) {
         options.virtual_mass = asked.virtual_mass;
     }
-    options.damping = asked.damping;
+    if (!command.damping.empty()) {
+        options.damping = asked.damping;
+    }
     options.scale = asked.scale;
     options.draws = asked.draws;
     auto of_model = dynamics::model_equilibria(model, options, shell.progress());
@@ -397,7 +395,8 @@ void add_equilibria(CLI::App* table, Shell& shell) {
         "--mass", eq->mass,
         "virtual mass in heave, mass + added mass; gives frequency and kick velocity (of a model its "
         "own)");
-    eq_command->add_option("--damping", eq->damping, "linear damping in heave, such as \"0.4 N s/m\"");
+    eq_command->add_option("--damping", eq->damping,
+                           "linear damping in heave, such as \"0.4 N s/m\" (of a model its own)");
     eq_command->add_option("--held", eq->held, "values of the other axes, such as pitch=1deg,speed=0.5");
     eq_command->add_option("--scale", eq->scale, "factor on the table's force, such as (speed/reference)^2");
     eq_command->add_option("--draws", eq->draws, "tables drawn from the error for the probabilities")

@@ -94,6 +94,8 @@ TEST_F(ModelForces, EquilibriaOfAModelAreThoseOfItsLinearAnalysis) {
             const nlohmann::json& mode = linear[i]["modes"][0];
             if (mode["imaginary"].get<double>() > 0) {
                 near(table[i]["angular_frequency"], mode["frequency"], 1e-4);
+                near(table[i]["damping_ratio"], mode["damping_ratio"], 1e-4);
+                EXPECT_GT(table[i]["damping_ratio"].get<double>(), 0) << file;
                 if (mode["frequency_sigma"].is_number()) {
                     near(table[i]["frequency_sigma"], mode["frequency_sigma"].get<double>() / (2 * 3.141592653589793),
                          0.05);
@@ -107,6 +109,29 @@ TEST_F(ModelForces, EquilibriaOfAModelAreThoseOfItsLinearAnalysis) {
     EXPECT_THAT(
         core::read_file(folder_.path() / "table.h"),
         testing::AllOf(HasSubstr("added_mass_heave_lowest = 1.75"), HasSubstr("added_mass_heave_highest = 3.2")));
+}
+
+/// Also where draws move the balance past the end of the table, and over a bend of it.
+TEST_F(ModelForces, AModelOfOneTableHasTheErrorsOfThatTable) {
+    std::string rows = "gap [mm], lift_force [mN], lift_force_sigma [mN]\n";
+    for (const auto& [gap, force] : {std::pair{1, 60.}, {3, 24.}, {10, 13.}, {20, 16.}, {50, 18.}, {100, 6.5}}) {
+        rows += std::to_string(gap) + ", " + std::to_string(force) + ", 2\n";
+    }
+    core::write_file(folder_.path() / "lift.csv", rows);
+    model("one.toml", "");
+    const nlohmann::json of_model = json({"table", "equilibria", "one.toml"})["equilibria"];
+    const nlohmann::json of_table = json({"table", "equilibria", "lift.csv", "--kind", "interpolation", "--weight",
+                                          "10 mN", "--mass", "3.954 kg"})["equilibria"];
+    ASSERT_EQ(of_model.size(), of_table.size());
+    ASSERT_FALSE(of_table.empty());
+    EXPECT_GT(of_table.back()["gap"].get<double>(), 0.07);
+    for (std::size_t i = 0; i < of_table.size(); ++i) {
+        for (const char* name : {"gap", "sigma", "stiffness", "stiffness_sigma", "frequency", "frequency_sigma"}) {
+            const double own = of_table[i][name].is_null() ? 0 : of_table[i][name].get<double>();
+            const double here = of_model[i][name].is_null() ? 0 : of_model[i][name].get<double>();
+            EXPECT_NEAR(here, own, 2e-3 * std::abs(own)) << name << " of " << i;
+        }
+    }
 }
 
 TEST_F(ModelForces, GainsKnowTheActuatorOrSayThatTheyDoNot) {

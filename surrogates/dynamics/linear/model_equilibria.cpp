@@ -94,7 +94,7 @@ bool ModelEquilibria::one_mass() const {
 }
 
 ModelEquilibria model_equilibria(const Model& declared, const BalanceOptions& options, core::Progress& progress) {
-    if (!(options.virtual_mass.value_or(0) >= 0) || !(options.damping >= 0) ||
+    if (!(options.virtual_mass.value_or(0) >= 0) || !(options.damping.value_or(0) >= 0) ||
         !std::isfinite(options.net_weight.value_or(0)) || !std::isfinite(options.scale)) {
         throw core::UsageError("range", "mass and damping must not be negative, weight and scale must be finite");
     }
@@ -115,7 +115,7 @@ ModelEquilibria model_equilibria(const Model& declared, const BalanceOptions& op
     found.quantity = "lift_force";
     found.source = model.name;
     tables::set_balances(found, tables::Line(result.at_rest, 0, {0.0}).scaled(1, -result.net_weight), [&](double gap) {
-        return tables::AtBalance{error(gap), mass_at(gap), options.damping};
+        return tables::AtBalance{error(gap), mass_at(gap), options.damping.value_or(plant.damping(gap))};
     });
     for (const tables::Equilibrium& e : found.all) {
         result.virtual_mass.push_back(mass_at(e.gap));

@@ -14,7 +14,7 @@ struct BalanceOptions {
     Conditions held;                     ///< over the model's conditions
     std::optional<double> net_weight;    ///< N, in place of the model's
     std::optional<double> virtual_mass;  ///< kg, in place of the model's
-    double damping = 0;                  ///< N s/m, linear; 0: no damping ratio
+    std::optional<double> damping;       ///< N s/m, linear, in place of the model's
     double scale = 1;                    ///< on the lift of its tables
     int draws = tables::usual_draws;
 };

@@ -7,11 +7,14 @@
 #include "core/parallel.h"
 #include "core/quantile.h"
 #include "surrogates/dynamics/model/force_error.h"
+#include "surrogates/dynamics/plant/resting_gaps.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 
 namespace underbody::dynamics {
 
 namespace {
+
+constexpr double slope_step = 1e-8;  ///< m, over which the stiffness is taken
 
 /// Effects whose numbers reach the force at rest past the tables: of the motion, or a declared number that is no
 /// table's.
@@ -143,8 +146,8 @@ double HeaveForceError::operator()(double gap, double pitch) const {
 
 LinearSystem heave_system(const HeavePlant& plant, double gap, double* stiffness) {
     double slope = 0;
-    const double mass = plant.inertia(gap, slope), step = 1e-8;
-    const double k = -(plant.static_force(gap + step) - plant.static_force(gap - step)) / (2 * step);
+    const double mass = plant.inertia(gap, slope);
+    const double k = -(plant.static_force(gap + slope_step) - plant.static_force(gap - slope_step)) / (2 * slope_step);
     if (stiffness) {
         *stiffness = k;
     }
@@ -173,7 +176,8 @@ HeaveTrim trim_at(const HeavePlant& plant, double gap) {
 /// The draw about the gap that the balance moves to in it, or about the given one.
 Drawn drawn_trim(const HeavePlant& plant, const HeavePlant& other, const HeaveTrim& trim, bool balanced) {
     const double moved = balanced ? (other.static_force(trim.gap) - plant.static_force(trim.gap)) / trim.stiffness : 0;
-    HeaveTrim there = trim_at(other, std::max(trim.gap + moved, other.contact_gap()));
+    const auto [lower, upper] = resting_range(other);  // as a table's draws, no further than the tables reach
+    HeaveTrim there = trim_at(other, std::clamp(trim.gap + moved, lower, upper - slope_step));
     double slope = 0;
     return {there.stiffness, other.inertia(there.gap, slope), std::move(there.modes), false};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/text.h"
 #include "surrogates/dynamics/model/effect.h"
@@ -44,17 +45,26 @@ Model of_the_vehicle(const Model& model, core::Problems& remarks) {
 }
 
 void hold_scales(const Model& model, const std::vector<Channel>& axes, Conditions& held, core::Problems& remarks) {
+    const Conditions known = model.conditions.over(references_of(model));
+    std::set<Channel> said;
     for (const ForceSource& source : model.forces) {
         for (const ForceScale& scale : source.scales) {
-            if (contains(axes, scale.channel) || held.has(scale.channel)) {
+            const Channel channel = scale.channel;
+            if (contains(axes, channel) || held.has(channel) || !said.insert(channel).second) {
                 continue;
             }
-            held[scale.channel] = model.conditions.get(scale.channel, scale.reference);
-            remark(
-                remarks, model,
-                std::string(channel_name(scale.channel)) + " is held at " +
-                    core::format_number(held[scale.channel], 6) + " " + channel_unit(scale.channel) +
-                    (model.conditions.has(scale.channel) ? ", the model's condition" : ", the reference of its scale"));
+            if (!known.has(channel)) {
+                remark(remarks, model,
+                       std::string(channel_name(channel)) +
+                           " is not held: the scales of the forces have several "
+                           "references, and each force is taken at its own");
+                continue;
+            }
+            held[channel] = known[channel];
+            remark(remarks, model,
+                   std::string(channel_name(channel)) + " is held at " + core::format_number(held[channel], 6) + " " +
+                       channel_unit(channel) +
+                       (model.conditions.has(channel) ? ", the model's condition" : ", the reference of its scale"));
         }
     }
 }

@@ -14,7 +14,7 @@ namespace underbody::dynamics {
 Model of_the_vehicle(const Model& model, core::Problems& remarks);
 
 /// Gives a value to every channel that scales a force and is no axis: the model's condition, else the reference of its
-/// scale; said in the remarks.
+/// scale (references_of: none where scales differ, and each force stays at its own); said in the remarks.
 void hold_scales(const Model& model, const std::vector<Channel>& axes, Conditions& held, core::Problems& remarks);
 
 /// Columns of one value: held channels, and the vehicle and the water that the forces belong to.

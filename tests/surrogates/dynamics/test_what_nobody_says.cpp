@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/own_files.h"
+#include "surrogates/dynamics/model/force_tables.h"
 #include "surrogates/dynamics/model/model.h"
 #include "surrogates/dynamics/plant/heave.h"
 #include "surrogates/dynamics/simulate/predict.h"
@@ -68,6 +69,15 @@ TEST_F(UnsaidConditions, SeveralReferencesAreNone) {
         "[[force]]\nquantity = \"lift_force\"\ntable = \"lift.csv\"\naxes = [\"gap\"]\n"
         "scale.speed = { reference = \"0.6 m/s\", exponent = 2 }\n");
     EXPECT_FALSE(references_of(two).has(Channel::speed));
+    // What leaves the program is the force that moves: each table at its own reference.
+    const ForceTables exported = force_tables(two);
+    const HeavePlant moves(two, {});
+    for (const double gap : {2e-3, 4e-3, 9e-3}) {
+        EXPECT_NEAR(exported.tables.at(0).value(&gap), moves.static_force(gap) + 0.25, 1e-9) << gap;
+    }
+    EXPECT_TRUE(std::any_of(exported.remarks.begin(), exported.remarks.end(), [](const core::Problem& remark) {
+        return remark.message.find("speed is not held") != std::string::npos;
+    }));
 }
 
 TEST_F(UnsaidConditions, ATableOfAnotherWaterSaysSoWhereverItIsRead) {
