@@ -294,17 +294,30 @@ Quantity parse_quantity(std::string_view text, const Place& place) {
     return {*number, unit};
 }
 
+namespace {
+
+/// People weigh in kilograms: what such a mass weighs, where a force is wanted. Else what was said.
+std::string hint_of_weight(const Quantity& given, std::string_view wanted, const std::string& otherwise) {
+    if (!same_dimension(given.unit, "kg") || !same_dimension(wanted, "N")) {
+        return otherwise;
+    }
+    const std::string weighs = format_number(convert(convert(given.value, given.unit, "kg"), "kgf", "N"), 4);
+    return "a weight is a force: " + format_number(given.value) + " " + given.unit + " weigh " + weighs +
+           " N in air, and less by what the water carries";
+}
+
+}  // namespace
+
 double parse_in(std::string_view text, std::string_view unit_si, const Place& place) {
     const Quantity quantity = parse_quantity(text, place);
     double value = quantity.value;
     try {
         value = quantity.unit.empty() ? value : convert(value, quantity.unit, unit_si, place);
     } catch (const InputError& error) {
-        if (!place.file.empty()) {
-            throw;
-        }
         // An option has no line to point at: its text says which one it was.
-        throw InputError(error.kind(), "'" + std::string(text) + "': " + error.message(), place, error.hint());
+        const std::string which = place.file.empty() ? "'" + std::string(text) + "': " : "";
+        throw InputError(error.kind(), which + error.message(), error.place(),
+                         hint_of_weight(quantity, unit_si, error.hint()));
     }
     if (!std::isfinite(value)) {
         throw InputError("range", "'" + std::string(text) + "' is not finite", place);

@@ -168,7 +168,7 @@ LoopOptions loop_options(const ControlArguments& a, double reference_gap) {
 
 /// What cannot be held, or not by this limit.
 void check(const ControlArguments& a, const SeparatedPlant& plant, const ControlLaw& law, const LoopOptions& o,
-           Shell& shell) {
+           std::vector<std::string>& warnings) {
     if (!(law.reference_gap > plant.contact_gap)) {
         throw core::UsageError("range", "--hold " + a.hold +
                                             " is no gap that can be held: the vehicle touches the ground at " +
@@ -186,16 +186,13 @@ void check(const ControlArguments& a, const SeparatedPlant& plant, const Control
     double slope = 0;
     const double needed = std::abs(plant.ground_force(law.reference_gap, slope) + plant.bias);
     if (needed > law.limit) {
-        shell.show(
-            {{core::Problem::Severity::warning,
-              "the limit of " + core::format_number(1e3 * law.limit, 4) +
-                  " mN cannot hold this gap: the balance there needs " + core::format_number(1e3 * needed, 4) + " mN",
-              {}}});
+        warnings.push_back("the limit of " + core::format_number(1e3 * law.limit, 4) +
+                           " mN cannot hold this gap: the balance there needs " + core::format_number(1e3 * needed, 4) +
+                           " mN");
     }
     if (const double fastest = std::max(std::abs(a.pole1), std::abs(a.pole2)); o.step * fastest > 0.5) {
-        shell.show_warning("a sample time of " + core::told(o.step, "s") +
-                           " is long beside the loop, whose fastest pole "
-                           "decays within " +
+        warnings.push_back("a sample time of " + core::told(o.step, "s") +
+                           " is long beside the loop, whose fastest pole decays within " +
                            core::told(1 / fastest, "s"));
     }
     const auto& known = loop_estimators();
@@ -222,13 +219,13 @@ nlohmann::json json_of(const LoopRun& loop, const SeparatedPlant& plant, const C
 
 void write_files(const ControlArguments& a, const dynamics::Model& model, const LoopRun& loop,
                  const SeparatedPlant& plant, const ControlLaw& law, const LoopEstimator& estimator,
-                 const LoopOptions& o) {
+                 const LoopOptions& o, Shell& shell) {
     if (!a.export_c.empty()) {
         const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
         core::write_file(a.export_c, export_controller_c(plant, law, estimator, o, name, made_from(a, model)));
     }
     if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), loop.table());
+        core::write_csv(std::filesystem::path(a.out), commented(shell, loop.table()));
     }
     if (!a.plot.empty()) {
         write_picture(figure_of(loop, law.reference_gap), a.plot);
@@ -283,10 +280,14 @@ int run_control(const ControlArguments& a, Shell& shell) {
     ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
     law.limit = quantity("--limit", a.limit, "N", INFINITY);
     const LoopOptions o = loop_options(a, law.reference_gap);
-    check(a, plant, law, o, shell);
-    if (const std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
-        shell.show_warning(reading);
-        warnings.push_back(reading);
+    std::vector<std::string> own;
+    check(a, plant, law, o, own);
+    if (std::string reading = dynamics::reading_on_the_rig(model.records); !reading.empty()) {
+        own.push_back(std::move(reading));
+    }
+    for (const std::string& warning : own) {
+        shell.show_warning(warning);
+        warnings.push_back(warning);
     }
     const std::vector<std::string> outside = show_gaps_outside(shell, model, held, {law.reference_gap, o.gap});
     warnings.insert(warnings.end(), outside.begin(), outside.end());
@@ -301,8 +302,8 @@ int run_control(const ControlArguments& a, Shell& shell) {
         shell.show_warning(loop.touched ? "the vehicle touched the ground: the loop does not hold this gap"
                                         : "the loop does not hold this gap: the motion runs away");
     }
-    shell.hand_over("motion", [&] { return loop.table(); });
-    write_files(a, model, loop, plant, law, estimator, o);
+    shell.hand_over("motion", [&] { return commented(shell, loop.table()); });
+    write_files(a, model, loop, plant, law, estimator, o, shell);
     nlohmann::json json = json_of(loop, plant, law, a, notes);
     std::string region_text;
     if (!a.region.empty()) {

@@ -145,9 +145,10 @@ estimator::EstimateOptions options_of(const EstimateArguments& a) {
     return options;
 }
 
-void write_files(const EstimateArguments& a, const dynamics::Model& model, const estimator::Estimation& result) {
+void write_files(const EstimateArguments& a, const dynamics::Model& model, const estimator::Estimation& result,
+                 Shell& shell) {
     if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), result.table);
+        core::write_csv(std::filesystem::path(a.out), commented(shell, result.table));
     }
     if (!a.export_c.empty()) {
         const std::string name = tables::identifier(std::filesystem::path(a.export_c).stem().string());
@@ -209,8 +210,8 @@ int run_estimate(const EstimateArguments& a, Shell& shell) {
             warnings.push_back(reading);
         }
     }
-    shell.hand_over("estimates", [&] { return result.table; });
-    write_files(a, model, result);
+    shell.hand_over("estimates", [&] { return commented(shell, result.table); });
+    write_files(a, model, result, shell);
     if (shell.json) {
         shell.print_json(json_of(result, surfaces, along, warnings));
     }

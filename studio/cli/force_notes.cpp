@@ -43,6 +43,11 @@ core::Problems outside_or_in_vain(const dynamics::Model& model, const dynamics::
 
 }  // namespace
 
+core::Table commented(Shell& shell, core::Table table) {
+    shell.comment_warnings(table);
+    return table;
+}
+
 std::vector<std::string> show_held_at_reference(Shell& shell, const dynamics::Model& model,
                                                 const dynamics::Conditions& held,
                                                 const std::vector<dynamics::Channel>& moving) {

@@ -32,4 +32,7 @@ std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model
 std::vector<std::string> show_table_warnings(Shell& shell, const dynamics::Model& model,
                                              const dynamics::Measurements& data);
 
+/// A table that is a result, with the warnings so far in its comments.
+core::Table commented(Shell& shell, core::Table table);
+
 }  // namespace underbody::studio

@@ -45,9 +45,9 @@ int run_predict(const PredictArguments& a, Shell& shell) {
             warnings.push_back(remark.message);
         }
     }
-    shell.hand_over("prediction", [&] { return prediction.table; });
+    shell.hand_over("prediction", [&] { return commented(shell, prediction.table); });
     if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), prediction.table);
+        core::write_csv(std::filesystem::path(a.out), commented(shell, prediction.table));
     }
     if (!a.plot.empty()) {
         write_picture(dynamics::prediction_figure(prediction), a.plot);

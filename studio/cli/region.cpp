@@ -133,13 +133,15 @@ int run_starts(const RegionArguments& a, const dynamics::Model& model, const dyn
     const std::vector<dynamics::EndClass>& classes = found.classes;
     core::Table& ends = found.table;
     shell.show(found.remarks);
+    const std::vector<std::string> warnings = show_table_warnings(shell, model, options.held);
     shell.comment_warnings(ends);
     shell.hand_over("map", [&] { return ends; });
     if (!a.table.empty()) {
         core::write_csv(std::filesystem::path(a.table), ends);
     }
     if (shell.json) {
-        nlohmann::json json = {{"classes", nlohmann::json::array()}, {"starts", nlohmann::json::array()}};
+        nlohmann::json json = {
+            {"classes", nlohmann::json::array()}, {"starts", nlohmann::json::array()}, {"warnings", warnings}};
         for (const dynamics::EndClass& end : classes) {
             if (end.fraction > 0) {
                 json["classes"].push_back({{"name", end.name},
@@ -312,6 +314,8 @@ int run_map(const RegionArguments& a, const dynamics::Model& model, const dynami
             Shell& shell) {
     const dynamics::StabilityRegion region = dynamics::stability_region(model, options, shell.progress());
     shell.show(region.remarks);
+    nlohmann::json json, forces;
+    show_forces(shell, model, options.held, forces);
     if (!a.out.empty()) {
         write_picture(dynamics::region_figure(region), a.out);
     }
@@ -319,9 +323,8 @@ int run_map(const RegionArguments& a, const dynamics::Model& model, const dynami
         core::write_csv(std::filesystem::path(a.table), commented_map(region, shell));
     }
     shell.hand_over("map", [&] { return commented_map(region, shell); });
-    nlohmann::json json;
     dynamics::to_json(json, region);
-    show_forces(shell, model, options.held, json);
+    json.update(forces);
     print_classes(shell, region.classes);
     if (a.safe) {
         json["safe_sets"] = safe_sets(region, shell);

@@ -118,9 +118,7 @@ void RegionLoopOptions::check() const {
 }
 
 core::Table commented_map(const dynamics::StabilityRegion& region, Shell& shell) {
-    core::Table map = dynamics::region_table(region);
-    shell.comment_warnings(map);
-    return map;
+    return commented(shell, dynamics::region_table(region));
 }
 
 std::string text_of(const dynamics::StabilityRegion& region) {
@@ -149,6 +147,8 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
     nlohmann::json json;
     std::string text;
     core::Figure figure;
+    nlohmann::json forces;
+    show_forces(shell, model, options.held, forces);
     if (draws > 0) {
         const dynamics::ProbabilityMap map =
             loop_probability(loop.plant, loop.law, loop.estimator, loop.options, grid, draws, shell.progress());
@@ -175,7 +175,7 @@ int run_region_with_estimator(const RegionLoopOptions& a, const dynamics::Model&
         write_picture(figure, picture);
     }
     json["loop"] = loop_json(a, loop);
-    show_forces(shell, model, options.held, json);
+    json.update(forces);
     shell.print(text);
     if (shell.json) {
         shell.print_json(json);

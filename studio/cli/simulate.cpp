@@ -231,13 +231,6 @@ Job job_of(const SimulateArguments& a, Shell& shell) {
 template <class Motion>
 void write_motion(const Motion& motion, const core::Figure& figure, const SimulateArguments& a, const Job& job,
                   Shell& shell) {
-    if (!a.out.empty()) {
-        core::write_csv(std::filesystem::path(a.out), motion.table());
-    }
-    if (!a.plot.empty()) {
-        write_picture(figure, a.plot);
-    }
-    shell.hand_over("motion", [&] { return motion.table(); });
     nlohmann::json json;
     auto moving = dynamics::varying_channels(job.inputs.signals);
     if constexpr (std::is_same_v<Motion, dynamics::SurfaceTrajectory> ||
@@ -245,6 +238,13 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Simula
         moving.push_back(Channel::speed);
     }
     show_forces(shell, job.model, job.inputs.signals.held, json, moving);
+    if (!a.out.empty()) {
+        core::write_csv(std::filesystem::path(a.out), commented(shell, motion.table()));
+    }
+    if (!a.plot.empty()) {
+        write_picture(figure, a.plot);
+    }
+    shell.hand_over("motion", [&] { return commented(shell, motion.table()); });
     for (const core::Problem& remark : job.remarks) {
         json["warnings"].push_back(remark.message);
     }

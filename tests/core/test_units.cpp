@@ -48,6 +48,24 @@ TEST(Units, SayWhatAUnitOfAnotherDimensionWasProbablyMeantFor) {
     EXPECT_EQ(mistyped_quantity("rpm"), "");
 }
 
+TEST(Units, AWeightInKilogramsIsToldWhatItWeighs) {
+    const auto hint = [](const char* text, const char* unit, const Place& place) {
+        try {
+            (void)parse_in(text, unit, place);
+        } catch (const InputError& error) {
+            EXPECT_NE(error.message().find("another dimension than '" + std::string(unit) + "'"), std::string::npos);
+            return error.hint();
+        }
+        return std::string();
+    };
+    for (const Place& place : {Place{}, Place{"study.toml", 3, {}, {}}}) {
+        EXPECT_EQ(hint("0.3kg", "N", place),
+                  "a weight is a force: 0.3 kg weigh 2.942 N in air, and less by what the water carries");
+        EXPECT_EQ(hint("300 g", "N", place).substr(0, 40), "a weight is a force: 300 g weigh 2.942 N");
+        EXPECT_EQ(hint("0.3 N", "kg", place).find("weight"), std::string::npos);
+    }
+}
+
 TEST(Mistyped, StandardDeviationsAreKnownByTheirEnding) {
     const auto column = [](const std::string& name, const std::string& unit) {
         Column one;

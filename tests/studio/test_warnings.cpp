@@ -165,6 +165,32 @@ TEST_F(Warnings, StandInTheCommentsOfATableAndOnStderr) {
     EXPECT_THAT(kept.output, HasSubstr("# warning: without 1 of 2 files"));
 }
 
+/// What changes the meaning of numbers goes with them into the file.
+TEST_F(Warnings, StandInTheTablesThatMotionsLeave) {
+    write_files();
+    const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";
+    const std::vector<std::vector<std::string>> commands = {
+        {"simulate", "model.toml", "--from", "gap=7mm", "--for", "1"},
+        {"control", "model.toml", "--hold", "8mm", "--from", "gap=9mm", "--for", "2"},
+        {"predict", "model.toml", "--data", "data"},
+        {"estimate", "model.toml", "--data", "data"},
+        {"region", "model.toml", "--axes", "gap=6mm:12mm,heave_velocity=-0.01:0.01", "--grid", "6x6"}};
+    for (std::vector<std::string> words : commands) {
+        const std::string out = words[0] + ".csv";
+        words.insert(words.end(), {words[0] == "region" ? "--table" : "--out", out});
+        const auto run = run_underbody(words, folder.path());
+        ASSERT_EQ(run.exit_code, 0) << words[0] << run.errors;
+        const std::string text = core::read_file(folder.path() / out);
+        EXPECT_EQ(times_in(text, unsettled), 1U) << words[0] << text.substr(0, 400);
+        EXPECT_THAT(text, testing::ContainsRegex("^# warning: [^\n]*" + unsettled)) << words[0];
+        EXPECT_NO_THROW((void)core::read_csv(folder.path() / out)) << words[0];
+    }
+    const auto weak = run_underbody(
+        {"control", "model.toml", "--hold", "8mm", "--from", "gap=9mm", "--for", "1", "--limit", "1e-6 N", "--json"},
+        folder.path());
+    EXPECT_THAT(json::parse(weak.output)["warnings"].dump(), HasSubstr("cannot hold this gap"));
+}
+
 TEST_F(Warnings, OfAnExportStandOnStderrForStdoutListsItsFiles) {
     write_files();
     const std::string unsettled = "1 of 8 points is of a solution that has not settled: row 2";

@@ -95,17 +95,21 @@ void check_acceleration_row(const Moments& m, const Layout& layout, double virtu
     }
 }
 
-// Bounded, Gaussian and pink samples stay within six deviations of their mean.
+// Bounded, Gaussian and pink samples stay within six deviations of their mean; a force that is steep near the ground
+// does not, and among many samples its largest values weigh little.
 void check_outliers(const Moments& m, const Layout& layout, core::Problems& problems) {
     const auto names = layout.names();
     for (std::size_t i = 0; i < m.lowest.size() && i < names.size(); ++i) {
         const double sigma = std::sqrt(std::max(m.covariance(i, i), 0.0));
         const double value = m.mean[i] - m.lowest[i] > m.highest[i] - m.mean[i] ? m.lowest[i] : m.highest[i];
         const double reach = std::abs(value - m.mean[i]);
-        if (sigma > 1e-9 * std::abs(m.mean[i]) && reach > 12 * sigma) {
+        constexpr double far = 12, notable = 0.02;  // deviations; part of the variance
+        const double part = reach * reach / (sigma * sigma * static_cast<double>(m.count));
+        if (sigma > 1e-9 * std::abs(m.mean[i]) && reach > far * sigma && part > notable) {
             warn(problems, "channel '" + names[i] + "' holds " + core::format_number(value, 4) + ", " +
-                               core::format_number(reach / sigma, 3) +
-                               " deviations from its mean: an outlier spoils the covariance; leave it out");
+                               core::format_number(reach / sigma, 3) + " deviations from its mean: one value makes " +
+                               core::format_number(100 * std::min(part, 1.0), 2) +
+                               " % of the variance; leave it out if it is an outlier");
         }
     }
 }

@@ -317,6 +317,28 @@ TEST(Learning, SaysWhereSamplesContradictTheEquationOfMotionOrHoldAnOutlier) {
     EXPECT_TRUE(check_consistency(moments(total.view()), total.layout, thesis_virtual_mass()).empty());
 }
 
+/// A force that is steep near the ground reaches far from its mean in a few of many samples, and is no outlier.
+TEST(Learning, OneValueIsAnOutlierWhereItMakesANotablePartOfTheVariance) {
+    const Layout layout = Layout::heave();
+    const auto warned = [&](std::size_t count, double reach) {
+        Moments m;
+        m.count = count;
+        m.mean = Vector(layout.channels(), 0.0);
+        m.covariance = Matrix::identity(layout.channels());
+        m.lowest = Vector(layout.channels(), -3.0);
+        m.highest = Vector(layout.channels(), 3.0);
+        m.lowest[layout.channels() - 1] = -reach;
+        const auto problems = check_consistency(m, layout);
+        return std::count_if(problems.begin(), problems.end(), [](const core::Problem& p) {
+            return p.message.find("deviations from its mean: one value makes") != std::string::npos;
+        });
+    };
+    EXPECT_EQ(warned(50000, 20), 0);  // 0.8 % of the variance
+    EXPECT_EQ(warned(2000, 20), 1);   // 20 %
+    EXPECT_EQ(warned(2000, 10), 0);
+    EXPECT_EQ(warned(50000, 40), 1);
+}
+
 TEST(Learning, RefusesWhatCannotBeLearned) {
     const Layout layout = Layout::heave();
     std::vector<double> few(8 * 9, 1.0);
