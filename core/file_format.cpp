@@ -101,6 +101,23 @@ bool FileFormat::takes_any_name(std::string_view place) const {
                        [&](const FileTable& entry) { return next_name(plain, entry.path) == "*"; });
 }
 
+std::string FileFormat::how_to_add_table(std::string_view parent, std::string_view place) const {
+    const FileTable* described = table(place);
+    if (described == nullptr) {
+        return {};
+    }
+    if (!described->one_line.empty()) {
+        return "add " + described->one_line + (parent.empty() ? "" : " under " + heading_of(parent));
+    }
+    std::string lines;
+    for (const FileKey& entry : described->keys) {
+        if (entry.required()) {
+            lines += (lines.empty() ? ": " : ", ") + entry.name + " = " + entry.example;
+        }
+    }
+    return "add " + heading_of(place) + (lines.empty() ? "" : " and its keys") + lines;
+}
+
 std::vector<std::string> FileFormat::names(std::string_view place) const {
     std::vector<std::string> result;
     const auto add = [&result](const std::string& found) {

@@ -52,6 +52,9 @@ struct FileFormat {
     [[nodiscard]] std::vector<std::string> names(std::string_view place) const;
     /// True where any name may stand.
     [[nodiscard]] bool takes_any_name(std::string_view place) const;
+    /// What to do about a missing table: its heading and its required keys, or its line in `parent`; empty: none is
+    /// described.
+    [[nodiscard]] std::string how_to_add_table(std::string_view parent, std::string_view place) const;
 };
 
 /// Reads a file by its format (which must live for ever): a name that it does not know is an error at once, before any

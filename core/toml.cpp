@@ -94,24 +94,6 @@ std::string how_to_add(const FileFormat* format, const std::string& path, std::s
            (heading.empty() ? "" : " under " + heading) + (described ? " (" + entry->meaning + ")" : "");
 }
 
-/// The same of a table: its heading and its required keys, or its line.
-std::string how_to_add_table(const FileFormat* format, const std::string& parent, const std::string& path) {
-    const FileTable* described = format != nullptr ? format->table(path) : nullptr;
-    if (described == nullptr) {
-        return {};
-    }
-    if (!described->one_line.empty()) {
-        return "add " + described->one_line + (parent.empty() ? "" : " under " + heading_of(parent));
-    }
-    std::string lines;
-    for (const FileKey& entry : described->keys) {
-        if (entry.required()) {
-            lines += (lines.empty() ? ": " : ", ") + entry.name + " = " + entry.example;
-        }
-    }
-    return "add " + heading_of(path) + (lines.empty() ? "" : " and its keys") + lines;
-}
-
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<Shared> shared, const void* node, std::string path)
@@ -261,7 +243,7 @@ TomlTable TomlTable::table(std::string_view key) const {
     const auto* node = static_cast<const toml::node*>(value(key));
     if (node == nullptr) {
         throw InputError("missing", "the table [" + path_of(key) + "] is missing", place(),
-                         how_to_add_table(shared_->format, path_, path_of(key)));
+                         shared_->format != nullptr ? shared_->format->how_to_add_table(path_, path_of(key)) : "");
     }
     if (const auto* table = node->as_table()) {
         return {shared_, table, path_of(key)};

@@ -27,37 +27,6 @@ QString words(const std::string& text) {
     return said.replace("+-", "±");
 }
 
-/// Numbers with a real minus sign and no leftover of rounding at zero.
-template <class Ticker>
-class FineTicker : public Ticker {
-protected:
-    QString getTickLabel(double tick, const QLocale& locale, QChar format, int precision) override {
-        QString label = Ticker::getTickLabel(std::abs(tick) < 1e-14 ? 0 : tick, locale, format, precision);
-        if (label.startsWith('-')) {
-            label[0] = QChar(0x2212);
-        }
-        return label;
-    }
-};
-
-/// 1, 2, 5, 10, ... of a logarithmic axis under one and a half decades, which powers of ten alone leave with a single
-/// number; more of them where it is less than one.
-class DecadeTicker : public FineTicker<QCPAxisTicker> {
-protected:
-    QVector<double> createTickVector(double, const QCPRange& range) override {
-        const QVector<double> parts =
-            range.upper > 10 * range.lower ? QVector<double>{1, 2, 5} : QVector<double>{1, 1.5, 2, 3, 4, 5, 7};
-        QVector<double> ticks;
-        for (double decade = std::pow(10, std::floor(std::log10(range.lower))); decade <= range.upper; decade *= 10) {
-            for (const double part : parts) {
-                ticks << part * decade;
-            }
-        }
-        return ticks;
-    }
-    int getSubTickCount(double) override { return 0; }
-};
-
 QPen curve_pen(const core::FigureCurve& curve) {
     return {to_qt(curve.colour), curve.width, curve.dashed ? Qt::DashLine : Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin};
 }

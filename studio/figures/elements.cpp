@@ -289,4 +289,16 @@ void paint_lines(QCPPainter& painter, QCPAxis& x, QCPAxis& y, const std::vector<
     }
 }
 
+QVector<double> DecadeTicker::createTickVector(double, const QCPRange& range) {
+    const QVector<double> parts =
+        range.upper > 10 * range.lower ? QVector<double>{1, 2, 5} : QVector<double>{1, 1.5, 2, 3, 4, 5, 7};
+    QVector<double> ticks;
+    for (double decade = std::pow(10, std::floor(std::log10(range.lower))); decade <= range.upper; decade *= 10) {
+        for (const double part : parts) {
+            ticks << part * decade;
+        }
+    }
+    return ticks;
+}
+
 }  // namespace underbody::studio

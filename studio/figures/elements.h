@@ -4,6 +4,7 @@
 
 #include <qcustomplot.h>
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -42,6 +43,27 @@ private:
     [[nodiscard]] int left() const;
     QString title_;
     std::vector<KeyEntry> entries_;
+};
+
+/// Numbers with a real minus sign and no leftover of rounding at zero.
+template <class Ticker>
+class FineTicker : public Ticker {
+protected:
+    QString getTickLabel(double tick, const QLocale& locale, QChar format, int precision) override {
+        QString label = Ticker::getTickLabel(std::abs(tick) < 1e-14 ? 0 : tick, locale, format, precision);
+        if (label.startsWith('-')) {
+            label[0] = QChar(0x2212);
+        }
+        return label;
+    }
+};
+
+/// 1, 2, 5, 10, ... of a logarithmic axis under one and a half decades, which powers of ten alone leave with a single
+/// number; more of them where it is less than one.
+class DecadeTicker : public FineTicker<QCPAxisTicker> {
+protected:
+    QVector<double> createTickVector(double, const QCPRange& range) override;
+    int getSubTickCount(double) override { return 0; }
 };
 
 /// Something painted inside the axes' box, clipped to it.

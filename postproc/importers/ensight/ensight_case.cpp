@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "postproc/importers/ensight/ensight_input.h"
 #include "postproc/importers/mesh/steps.h"
 
 namespace underbody::postproc {
@@ -13,32 +14,6 @@ namespace underbody::postproc {
 namespace {
 
 constexpr std::size_t most_text = std::size_t{16} << 20;
-
-std::vector<std::string> words_of(std::string_view text) {
-    std::vector<std::string> words;
-    std::string word;
-    bool quoted = false;
-    bool any = false;
-    for (const char c : text) {
-        if (c == '"') {
-            quoted = !quoted;
-            any = true;
-        } else if (!quoted && static_cast<unsigned char>(c) <= ' ') {
-            if (any) {
-                words.push_back(word);
-            }
-            word.clear();
-            any = false;
-        } else {
-            word += c;
-            any = true;
-        }
-    }
-    if (any) {
-        words.push_back(word);
-    }
-    return words;
-}
 
 /// What may stand before a colon, by section; sections without a list hold what is not read.
 const std::map<std::string, std::vector<std::string>> known_keys = {
@@ -57,7 +32,7 @@ const std::map<std::string, std::vector<std::string>> known_keys = {
 /// In small letters, with one blank between words: writers differ in both.
 std::string key_of(std::string_view text) {
     std::string key;
-    for (const auto& word : words_of(text)) {
+    for (const auto& word : ensight_words(text)) {
         key += (key.empty() ? "" : " ") + core::lower_case(word);
     }
     return key;
@@ -214,7 +189,7 @@ void CaseReader::geometry(const std::string& key, const std::string& rest) {
     if (key != "model") {
         return;  // measured, match, boundary, rigid_body: particles and the like
     }
-    auto words = words_of(rest);
+    auto words = ensight_words(rest);
     take_sets(words, 1, geometry_);
     if (words.empty()) {
         fail("the model has no file name");
@@ -240,7 +215,7 @@ std::string unread_variable(const std::string& key, const std::vector<std::strin
 }  // namespace
 
 void CaseReader::variable(const std::string& key, const std::string& rest) {
-    auto words = words_of(rest);
+    auto words = ensight_words(rest);
     if (key.starts_with("constant per case") || key.starts_with("constant per part")) {
         if (words.size() >= 2) {
             result_.constants.emplace_back(words[words.size() - 2], words.back());
@@ -272,7 +247,7 @@ void CaseReader::variable(const std::string& key, const std::string& rest) {
 }
 
 void CaseReader::time(const std::string& key, const std::string& rest, std::string_view line) {
-    const auto words = words_of(rest);
+    const auto words = ensight_words(rest);
     const auto first = [&]() -> std::string { return words.empty() ? std::string() : words.front(); };
     if (key == "time set") {
         set_ = &sets_[whole(first())];
@@ -299,7 +274,7 @@ void CaseReader::time(const std::string& key, const std::string& rest, std::stri
             set_->values.push_back(real(word));
         }
     } else if (key == "time values file" || key == "filename numbers file") {
-        for (const auto& word : words_of(core::read_file(path_.parent_path() / first()))) {
+        for (const auto& word : ensight_words(core::read_file(path_.parent_path() / first()))) {
             if (key.starts_with("time")) {
                 set_->values.push_back(real(word));
             } else {
@@ -307,7 +282,7 @@ void CaseReader::time(const std::string& key, const std::string& rest, std::stri
             }
         }
     } else if (key.empty() && listing_ != Listing::none) {
-        for (const auto& word : words_of(line)) {
+        for (const auto& word : ensight_words(line)) {
             if (listing_ == Listing::numbers) {
                 set_->numbers.push_back(whole(word));
             } else {
@@ -318,7 +293,7 @@ void CaseReader::time(const std::string& key, const std::string& rest, std::stri
 }
 
 void CaseReader::files(const std::string& key, const std::string& rest) {
-    const auto words = words_of(rest);
+    const auto words = ensight_words(rest);
     const std::string first = words.empty() ? std::string() : words.front();
     if (key == "file set") {
         file_set_ = &file_sets_[whole(first)];

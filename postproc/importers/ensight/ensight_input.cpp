@@ -252,4 +252,30 @@ void EnsightInput::reals(double* out, std::uint64_t count) {
     }
 }
 
+std::vector<std::string> ensight_words(std::string_view text) {
+    std::vector<std::string> words;
+    std::string word;
+    bool quoted = false;
+    bool any = false;
+    for (const char c : text) {
+        if (c == '"') {
+            quoted = !quoted;
+            any = true;
+        } else if (!quoted && static_cast<unsigned char>(c) <= ' ') {
+            if (any) {
+                words.push_back(word);
+            }
+            word.clear();
+            any = false;
+        } else {
+            word += c;
+            any = true;
+        }
+    }
+    if (any) {
+        words.push_back(word);
+    }
+    return words;
+}
+
 }  // namespace underbody::postproc

@@ -13,6 +13,9 @@ namespace underbody::postproc {
 
 enum class EnsightCoding { text, c_binary, fortran_binary };
 
+/// Words between blanks; what stands in quotation marks is one.
+std::vector<std::string> ensight_words(std::string_view text);
+
 class EnsightInput {
 public:
     /// `coding` and `swapped` are those of the geometry; a geometry finds them out itself.

@@ -1,4 +1,7 @@
-// Entries of OpenFOAM dictionaries: what they state is kept, and stands for "$name" further down.
+// Entries of OpenFOAM dictionaries: what they state is kept, and stands for "$name" further
+// down; dimensions.
+
+#include <map>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -11,6 +14,33 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t longest_macro = 1000;  // of a macro or an included file
+
+/// The names that OpenFOAM's Foundation line gives (version 10 on), as exponents of kg, m, s, K, mol, A, cd.
+std::vector<double> named_dimensions(const std::string& name, const FoamInput& in) {
+    static const std::map<std::string, std::vector<double>> known = {{"dimless", {0, 0, 0, 0, 0, 0, 0}},
+                                                                     {"length", {0, 1, 0, 0, 0, 0, 0}},
+                                                                     {"velocity", {0, 1, -1, 0, 0, 0, 0}},
+                                                                     {"pressure", {1, -1, -2, 0, 0, 0, 0}},
+                                                                     {"kinematicPressure", {0, 2, -2, 0, 0, 0, 0}},
+                                                                     {"density", {1, -3, 0, 0, 0, 0, 0}},
+                                                                     {"temperature", {0, 0, 0, 1, 0, 0, 0}},
+                                                                     {"energy", {1, 2, -2, 0, 0, 0, 0}},
+                                                                     {"kinematicViscosity", {0, 2, -1, 0, 0, 0, 0}},
+                                                                     {"dynamicViscosity", {1, -1, -1, 0, 0, 0, 0}},
+                                                                     {"force", {1, 1, -2, 0, 0, 0, 0}},
+                                                                     {"volume", {0, 3, 0, 0, 0, 0, 0}},
+                                                                     {"time", {0, 0, 1, 0, 0, 0, 0}},
+                                                                     {"rate", {0, 0, -1, 0, 0, 0, 0}},
+                                                                     {"mass", {1, 0, 0, 0, 0, 0, 0}}};
+    if (const auto found = known.find(name); found != known.end()) {
+        return found->second;
+    }
+    std::string names;
+    for (const auto& [each, exponents] : known) {
+        names += (names.empty() ? "" : ", ") + each;
+    }
+    in.fail("the dimensions '" + name.substr(0, 40) + "' are not known; seven exponents are, and " + names);
+}
 
 }  // namespace
 
@@ -193,6 +223,24 @@ void FoamInput::skip_entry(std::string* text) {
             *text += (text->empty() ? "" : " ") + (mark ? word : '"' + word + '"');
         }
     }
+}
+
+std::vector<double> FoamInput::dimensions() {
+    std::vector<double> exponents;
+    expect("[");
+    while (!accept(']')) {
+        if (at_letter()) {
+            exponents = named_dimensions(token(), *this);
+        } else {
+            exponents.push_back(number());
+        }
+        if (exponents.size() > 7) {
+            fail("more than seven dimensions");
+        }
+    }
+    expect(";");
+    exponents.resize(7);
+    return exponents;
 }
 
 }  // namespace underbody::postproc

@@ -277,56 +277,6 @@ Buffer<double> FoamFields::inner_values(FoamInput& in, std::size_t components, s
     return values;
 }
 
-namespace {
-
-/// The names that OpenFOAM's Foundation line gives (version 10 on), as exponents of kg, m, s, K, mol, A, cd.
-std::vector<double> named_dimensions(const std::string& name, const FoamInput& in) {
-    static const std::map<std::string, std::vector<double>> known = {{"dimless", {0, 0, 0, 0, 0, 0, 0}},
-                                                                     {"length", {0, 1, 0, 0, 0, 0, 0}},
-                                                                     {"velocity", {0, 1, -1, 0, 0, 0, 0}},
-                                                                     {"pressure", {1, -1, -2, 0, 0, 0, 0}},
-                                                                     {"kinematicPressure", {0, 2, -2, 0, 0, 0, 0}},
-                                                                     {"density", {1, -3, 0, 0, 0, 0, 0}},
-                                                                     {"temperature", {0, 0, 0, 1, 0, 0, 0}},
-                                                                     {"energy", {1, 2, -2, 0, 0, 0, 0}},
-                                                                     {"kinematicViscosity", {0, 2, -1, 0, 0, 0, 0}},
-                                                                     {"dynamicViscosity", {1, -1, -1, 0, 0, 0, 0}},
-                                                                     {"force", {1, 1, -2, 0, 0, 0, 0}},
-                                                                     {"volume", {0, 3, 0, 0, 0, 0, 0}},
-                                                                     {"time", {0, 0, 1, 0, 0, 0, 0}},
-                                                                     {"rate", {0, 0, -1, 0, 0, 0, 0}},
-                                                                     {"mass", {1, 0, 0, 0, 0, 0, 0}}};
-    if (const auto found = known.find(name); found != known.end()) {
-        return found->second;
-    }
-    std::string names;
-    for (const auto& [each, exponents] : known) {
-        names += (names.empty() ? "" : ", ") + each;
-    }
-    in.fail("the dimensions '" + name.substr(0, 40) + "' are not known; seven exponents are, and " + names);
-}
-
-/// "[0 2 -2 0 0 0 0]", "[kinematicPressure]", "[]".
-std::vector<double> read_dimensions(FoamInput& in) {
-    std::vector<double> exponents;
-    in.expect("[");
-    while (!in.accept(']')) {
-        if (in.at_letter()) {
-            exponents = named_dimensions(in.token(), in);
-        } else {
-            exponents.push_back(in.number());
-        }
-        if (exponents.size() > 7) {
-            in.fail("more than seven dimensions");
-        }
-    }
-    in.expect(";");
-    exponents.resize(7);
-    return exponents;
-}
-
-}  // namespace
-
 /// The values of a field on the patches of a piece of the mesh.
 void FoamFields::add_patches(const FoamPiece& piece, const ValueBlock& block, const BoundaryValues& boundary,
                              const Buffer<double>& inner, double sign, const fs::path& file) {
@@ -373,7 +323,7 @@ void FoamFields::read_field(const FoamPiece& piece, const fs::path& file) {
     bool closed = false;
     for (std::string key = in.token(); !key.empty(); key = in.token()) {
         if (key == "dimensions") {
-            dimensions = read_dimensions(in);
+            dimensions = in.dimensions();
             name_quantity(block, dimensions);
             if (!is_wanted(block)) {
                 return;

@@ -63,6 +63,8 @@ public:
     /// "3(4(0 1 2 3) 3(0 1 2) ...)": corners of faces one after the other, with one more offset than faces.
     void faces(Buffer<std::uint32_t>& offsets, Buffer<std::uint32_t>& nodes);
 
+    /// "[0 2 -2 0 0 0 0];", "[kinematicPressure];", "[];": exponents of kg, m, s, K, mol, A, cd.
+    std::vector<double> dimensions();
     /// One value: "5" or "(1 0 0)".
     std::vector<double> value(std::size_t components);
     /// The rest of an entry after its key: up to its ';' or the end of its block. `text` gets its words (the first 64

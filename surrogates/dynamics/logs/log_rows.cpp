@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/counted.h"
 #include "core/no_limit.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace underbody::dynamics {
@@ -59,12 +61,7 @@ double usual_step(const std::vector<double>& time) {
     for (std::size_t i = 1; i < time.size(); ++i) {
         steps.push_back(time[i] - time[i - 1]);
     }
-    if (steps.empty()) {
-        return 0;
-    }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
+    return steps.empty() ? 0 : core::median(std::move(steps));
 }
 
 /// The times of the rows: every reading of gap and velocity, every change of a held input.
