@@ -8,7 +8,6 @@
 #include "cases/design.h"
 #include "core/counted.h"
 #include "core/text.h"
-#include "core/told.h"
 #include "geometry/body/variants.h"
 #include "surrogates/tables/points/set_points.h"
 
@@ -37,36 +36,6 @@ std::vector<double> grid_of(const SearchVariable& v, std::size_t axes) {
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Conditions that take several values, in the order of the surrogates' variables.
-std::vector<SearchVariable> conditions_of(const DesignSpec& spec) {
-    std::vector<SearchVariable> conditions = spec.all_variables();
-    std::erase_if(conditions, [](const SearchVariable& v) { return v.of_shape; });
-    return conditions;
-}
-
-std::vector<std::string> names_of(const std::vector<SearchVariable>& variables) {
-    std::vector<std::string> names;
-    for (const SearchVariable& v : variables) {
-        names.push_back(v.name);
-    }
-    return names;
-}
-
-/// What was computed at one value alone.
-std::vector<std::pair<std::string, double>> only_values(const DesignSpec& spec) {
-    std::vector<std::pair<std::string, double>> all;
-    const auto take = [&](const std::string& name, const std::vector<double>& values) {
-        if (values.size() == 1) {
-            all.emplace_back(name, values.front());
-        }
-    };
-    take("gap", spec.gaps);
-    take("pitch", spec.pitches);
-    take("speed", spec.speeds);
-    take(spec.jet.quantity, spec.jet.values);
-    return all;
 }
 
 /// The shape of the search that is most like it: at its own varied numbers, where there is one.
@@ -242,60 +211,6 @@ core::Table surrogate_points(const DesignSpec& spec, const std::vector<double>& 
     return points;
 }
 
-void check_asked(const DesignSpec& spec, const AskedPoints& asked) {
-    const auto conditions = conditions_of(spec);
-    const auto known = names_of(conditions);
-    for (const std::string& quantity : asked.quantities) {
-        if (!has(spec.quantities, quantity)) {
-            throw core::InputError("name", "[design] does not compute " + quantity, {},
-                                   core::did_you_mean(quantity, spec.quantities));
-        }
-    }
-    for (const std::string& axis : asked.axes) {
-        if (!has(known, axis)) {
-            throw core::InputError("name", "'" + axis + "' takes no several values in [design]: it cannot be an axis",
-                                   {},
-                                   known.empty() ? "give [design] several gaps, pitches, speeds or jets"
-                                                 : core::did_you_mean(axis, known));
-        }
-    }
-    const auto only = only_values(spec);
-    for (const auto& [name, value] : asked.held.numbers) {
-        const auto fixed =
-            std::find_if(only.begin(), only.end(), [&, key = name](const auto& v) { return v.first == key; });
-        const auto varied = std::find_if(conditions.begin(), conditions.end(),
-                                         [&, key = name](const auto& v) { return v.name == key; });
-        if (fixed == only.end() && varied == conditions.end()) {
-            std::vector<std::string> all = known;
-            for (const auto& [one, only_value] : only) {
-                all.push_back(one);
-            }
-            throw core::InputError("name", "'" + name + "' is no condition of [design]", {},
-                                   core::did_you_mean(name, all));
-        }
-        const double lower = fixed != only.end() ? fixed->second : varied->lower;
-        const double upper = fixed != only.end() ? fixed->second : varied->upper;
-        const double rounding = 1e-9 * std::max(std::abs(lower), std::abs(upper));
-        if (value < lower - rounding || value > upper + rounding) {
-            const std::string unit = core::find_quantity(name)->unit;
-            throw core::InputError(
-                "range",
-                core::told_condition(name, value) + ": [design] computes " +
-                    (upper > lower ? core::told_range(lower, upper, unit) : core::told(lower, unit) + " alone"),
-                {}, "stay inside: beyond it nothing was learned");
-        }
-    }
-    if (!asked.axes.empty()) {
-        for (const SearchVariable& v : conditions) {
-            if (!has(asked.axes, v.name) && !asked.held.number(v.name)) {
-                throw core::InputError("missing",
-                                       "the loads vary over the " + v.name + ", and it is neither an axis nor held", {},
-                                       "say its value, " + core::told_range(v.lower, v.upper, v.unit));
-            }
-        }
-    }
-}
-
 core::Table shape_points(const LearnedLoads& known, const geometry::BodyShape& shape, const AskedPoints& asked) {
     check_asked(known.spec, asked);
     const std::vector<double> at = varied_numbers(known.spec, known.base, shape);
@@ -313,7 +228,9 @@ core::Table shape_points(const LearnedLoads& known, const geometry::BodyShape& s
     }
     std::vector<std::string> axes = asked.axes;
     if (axes.empty()) {
-        axes = names_of(conditions_of(known.spec));
+        for (const SearchVariable& condition : conditions_of(known.spec)) {
+            axes.push_back(condition.name);
+        }
         std::erase_if(axes, [&](const std::string& name) { return asked.held.number(name).has_value(); });
     }
     if (axes.empty()) {

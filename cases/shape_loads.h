@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/asked_points.h"
 #include "cases/conditions.h"
 #include "cases/design_spec.h"
 #include "core/error.h"
@@ -59,18 +60,9 @@ core::Table surrogate_points(const DesignSpec& spec, const std::vector<double>& 
                              const std::vector<const tables::Surrogate*>& of, const std::vector<std::string>& axes,
                              const Conditions& held);
 
-/// What a table of a shape is asked of.
-struct AskedPoints {
-    std::vector<std::string> quantities;  ///< empty: all
-    std::vector<std::string> axes;        ///< empty: all conditions that vary
-    Conditions held;                      ///< SI
-};
 /// The same with everything checked: throws core::InputError where the shape is not of the searched family (with the
 /// number that differs most), a condition is not known, has no value or one beyond the range that was computed. The
 /// table's comments say what it rests on and how the surrogates do on shapes left out.
 core::Table shape_points(const LearnedLoads& known, const geometry::BodyShape& shape, const AskedPoints& asked);
-
-/// Without a run: that axes and held values are conditions of [design]. Throws as shape_points.
-void check_asked(const DesignSpec& spec, const AskedPoints& asked);
 
 }  // namespace underbody::cases

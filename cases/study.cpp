@@ -6,10 +6,10 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "cases/asked_points.h"
 #include "cases/case_names.h"
 #include "cases/design_points.h"
 #include "cases/percent.h"
-#include "cases/shape_loads.h"
 #include "cases/study_format.h"
 #include "cases/sweep.h"
 #include "cases/sweep_slurm.h"
