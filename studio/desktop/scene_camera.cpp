@@ -1,7 +1,6 @@
 // The 3D view: from where it is seen, and how a hand turns it.
 #include <vtkCamera.h>
 #include <vtkInteractorStyleTrackballCamera.h>
-#include <vtkMath.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderWindowInteractor.h>
 
@@ -36,18 +35,26 @@ vtkStandardNewMacro(MouseStyle);
 
 constexpr double bar_room = 0.1;  ///< of half the width, for the colour bar on the right
 
-/// How far the picture may be enlarged until a corner of the box leaves it.
-double zoom_that_holds(vtkRenderer& renderer, const std::array<double, 6>& box) {
+/// How far the picture may be enlarged until one of the places leaves it.
+double zoom_that_holds(vtkRenderer& renderer, const std::vector<std::array<double, 3>>& places) {
     constexpr double edge = 0.97;
     double zoom = 10;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        renderer.SetWorldPoint(box[corner & 1U], box[2 + (corner >> 1U & 1U)], box[4 + (corner >> 2U)], 1);
+    for (const auto& [x, y, z] : places) {
+        renderer.SetWorldPoint(x, y, z, 1);
         renderer.WorldToView();
         const double* at = renderer.GetViewPoint();  // from -1 to 1
         zoom = std::min(
             {zoom, (edge - bar_room) / std::max(1e-3, std::abs(at[0])), edge / std::max(1e-3, std::abs(at[1]))});
     }
     return zoom;
+}
+
+std::vector<std::array<double, 3>> corners(const std::array<double, 6>& box) {
+    std::vector<std::array<double, 3>> places;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        places.push_back({box[corner & 1U], box[2 + (corner >> 1U & 1U)], box[4 + (corner >> 2U)]});
+    }
+    return places;
 }
 
 }  // namespace
@@ -86,12 +93,31 @@ void Scene::look_from(const std::string& view, const std::string& forward, const
     const double most = view == "iso" ? 1.2 : 1.15;  // a body fills less than the ball around it
     if (const auto all = box ? box : bounds()) {
         parts_->renderer->ResetCamera(all->data());
-        camera->Zoom(std::min(most, zoom_that_holds(*parts_->renderer, *all)));
+        const bool own = !box || box == bounds();  // else others are larger, of which the box is all that is known
+        camera->Zoom(std::min(most, zoom_that_holds(*parts_->renderer, own ? parts_->some_places() : corners(*all))));
     } else {
         parts_->renderer->ResetCamera();
         camera->Zoom(most);
     }
     camera->SetWindowCenter(bar_room, 0);
+}
+
+std::vector<std::array<double, 3>> Scene::Parts::some_places() const {
+    std::vector<std::array<double, 3>> places;
+    for (const auto& surface : surfaces) {
+        auto* points = visible(surface) ? surface.mapper->GetInput()->GetPoints() : nullptr;
+        const vtkIdType count = points != nullptr ? points->GetNumberOfPoints() : 0;
+        for (vtkIdType i = 0; i < count; i += std::max<vtkIdType>(1, count / 2000)) {
+            places.emplace_back();
+            points->GetPoint(i, places.back().data());
+            if (mirrored && mirror.is_half()) {
+                places.push_back(places.back());
+                auto& across = places.back()[static_cast<std::size_t>(mirror.axis)];
+                across = 2 * mirror.at.value_or(0) - across;
+            }
+        }
+    }
+    return places;
 }
 
 Scene::Pose Scene::pose() const {

@@ -97,6 +97,8 @@ struct Scene::Parts : QObject {
     QTimer hover, turned;
     Pose held{};  ///< as it was when a hand took hold of it
     void follow_hand();
+    /// Of what is seen, both sides of a half model: at most some thousands.
+    [[nodiscard]] std::vector<std::array<double, 3>> some_places() const;
     QPoint pressed;
     vtkNew<vtkAppendPolyData> other;  ///< all of another body
     vtkNew<vtkPolyDataSilhouette> rim;
