@@ -124,7 +124,12 @@ State show_workspace(State state, const Words& words, const Session&) {
 
 State select(State state, const Words& words, const Session& session) {
     need_things(state, session, words);
-    const auto outside = state.selected("field");
+    auto outside = state.selected("field");
+    const bool was_outside = !outside.empty();
+    if (const auto last = state.last.find("field");
+        !was_outside && state.selected("case").empty() && last != state.last.end()) {
+        outside = last->second;  // a shape, a table is selected: what was compared before it
+    }
     state.selection.clear();
     std::map<std::string, std::vector<std::string>> kinds;
     for (const auto& id : words) {
@@ -140,9 +145,11 @@ State select(State state, const Words& words, const Session& session) {
     if (kinds.contains("shape")) {
         state.design.shape = kinds["shape"].front();
     }
-    const auto& now = kinds["field"];
-    if (now.empty() != outside.empty() ||
-        (!now.empty() && std::find_first_of(now.begin(), now.end(), outside.begin(), outside.end()) == now.end())) {
+    const bool others = kinds.contains("field")
+                            ? std::find_first_of(kinds["field"].begin(), kinds["field"].end(), outside.begin(),
+                                                 outside.end()) == kinds["field"].end()
+                            : kinds.contains("case") && was_outside;
+    if (others) {
         state.fields.turned.reset();  // other files from outside may be of any size
     }
     return state;

@@ -214,6 +214,9 @@ TEST(StudioState, AnotherFileFromOutsideIsSeenWhole) {
     EXPECT_TRUE(state.fields.turned) << "one more beside it";
     EXPECT_TRUE(applied(state, words_of("select field/" + b), *evie_session()).fields.turned);
     state = applied(state, words_of("select field/" + a), *evie_session());
+    const State shape = applied(state, words_of("select shape/ellipse"), *evie_session());
+    EXPECT_TRUE(applied(shape, words_of("select field/" + a), *evie_session()).fields.turned) << "back from a shape";
+    EXPECT_FALSE(applied(shape, words_of("select field/" + b), *evie_session()).fields.turned);
     EXPECT_FALSE(applied(state, words_of("select field/" + b), *evie_session()).fields.turned);
     EXPECT_FALSE(applied(state, words_of("select case/ellipse-h2-p0"), *evie_session()).fields.turned);
 }
