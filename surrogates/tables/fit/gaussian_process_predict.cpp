@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,20 @@ ArrayXd covariances(const ArrayXXd& data, Kernel kernel, const GpParameters& p, 
     return product.covariances();
 }
 
+/// Correlations with the data along one axis, and the derivative of their logarithm.
+struct OnAxis {
+    ArrayXd factor, rate;
+
+    OnAxis() = default;
+    OnAxis(const ArrayXXd& data, Kernel kernel, GpParameters p, Eigen::Index a, double x) {
+        p.scale = 1;
+        Product alone(data, p, true);
+        alone.take(data, kernel, p, a, x);
+        factor = alone.covariances();
+        rate = alone.rate.col(a);
+    }
+};
+
 /// Axes in which not all points [point, axis] are equal.
 std::vector<Eigen::Index> axes_that_vary(const Eigen::Map<const RowMajor>& points) {
     std::vector<Eigen::Index> varying;
@@ -127,19 +142,26 @@ GpMeans GaussianProcess::means(std::span<const double> x, std::span<const double
             shared.take(s.x, s.kernel, s.parameters, a, at(0, a));
         }
     }
+    const ArrayXd weighted = shared.covariances() * weights.array();
+    std::map<std::pair<Eigen::Index, double>, OnAxis> known;  // the nodes of a curve have few coordinates
     GpMeans result;
     for (Eigen::Index i = 0; i < points; ++i) {
-        Product product = shared;
+        ArrayXd here = weighted;
         for (const Eigen::Index a : varying) {
-            product.take(s.x, s.kernel, s.parameters, a, at(i, a));
+            const auto [factor, fresh] = known.try_emplace({a, at(i, a)});
+            if (fresh) {
+                factor->second = OnAxis(s.x, s.kernel, s.parameters, a, at(i, a));
+            }
+            here *= factor->second.factor;
+            if (slopes) {
+                shared.rate.col(a) = factor->second.rate;
+            }
         }
-        const ArrayXd weighted = product.covariances() * weights.array();
-        result.mean.push_back(weighted.sum() + own.row(i).dot(coefficients));
+        result.mean.push_back(here.sum() + own.row(i).dot(coefficients));
         if (slopes) {
             const Eigen::Map<const RowMajor> dh(&trend_slope[static_cast<std::size_t>(i * trends * axes)], trends,
                                                 axes);
-            const VectorXd slope =
-                product.rate.matrix().transpose() * weighted.matrix() + dh.transpose() * coefficients;
+            const VectorXd slope = shared.rate.matrix().transpose() * here.matrix() + dh.transpose() * coefficients;
             result.slope.insert(result.slope.end(), slope.data(), slope.data() + axes);
         }
     }
