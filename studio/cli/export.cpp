@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "cases/percent.h"
+#include "cases/prove_export.h"
 #include "core/error.h"
 #include "core/own_files.h"
 #include "core/text.h"
@@ -39,6 +40,7 @@ struct ExportCommand {
     std::string base_centre;
     bool overwrite = false;
     bool self_test = false;
+    bool prove = false;
     std::string motion;
     std::string from;
 };
@@ -184,9 +186,9 @@ int run_motion(Shell& shell, const ExportCommand& command) {
         throw core::UsageError("format", "a motion is written as an FMU (--format fmu), not as " + format_of(command));
     }
     if (!command.max_error.empty() || !command.points.empty() || command.number != "double" || command.self_test ||
-        command.frame != "up") {
+        command.prove || command.frame != "up") {
         throw core::UsageError("range",
-                               "--max-error, --points, --number, --frame and --self-test are of tables: a "
+                               "--max-error, --points, --number, --frame, --self-test and --prove are of tables: a "
                                "motion is written as it is simulated");
     }
     const auto model = dynamics::read_model(command.table.file);
@@ -283,6 +285,20 @@ nlohmann::json json_of(const tables::ExportResult& result, const std::string& fo
     return document;
 }
 
+/// Compiled and compared before it is written; throws where it differs.
+void prove(Shell& shell, const std::string& format, const std::vector<tables::ForceTable>& all,
+           const tables::ExportOptions& options, nlohmann::json& document) {
+    if (format != "c") {
+        throw core::UsageError("format", "a C header is proved, not " + format);
+    }
+    const auto proof = cases::prove_export(all, options, shell.progress());
+    if (!proof.equal) {
+        throw core::SystemError("proof", proof.sentence);
+    }
+    shell.info(proof.sentence);
+    document["proof"] = {{"equal", proof.equal}, {"points", proof.points}, {"sentence", proof.sentence}};
+}
+
 int run_export(Shell& shell, const ExportCommand& command) {
     shell.list_on_stdout = true;
     if (!command.motion.empty()) {
@@ -303,6 +319,10 @@ int run_export(Shell& shell, const ExportCommand& command) {
     options.lever = lever_of(command);
     const bool several = command.table.quantity.find(',') != std::string::npos || command.table.quantity == "all";
     const auto all = several ? command.table.fit_all(shell) : std::vector<tables::ForceTable>{command.table.fit(shell)};
+    nlohmann::json proved;
+    if (command.prove) {
+        prove(shell, format, all, options, proved);
+    }
     const auto folder = missing_folder(command.out);
     const auto result = tables::export_tables(all, format, command.out, options, shell.progress());
     shell.show(result.remarks);
@@ -318,6 +338,9 @@ int run_export(Shell& shell, const ExportCommand& command) {
     const nlohmann::json errors = errors_of(shell, command, all, result, options.max_error);
     if (shell.json) {
         nlohmann::json document = json_of(result, format, all.front().quantity(), errors, bytes);
+        if (command.prove) {
+            document.update(proved);
+        }
         if (!folder.empty()) {
             document["made_folder"] = folder.string();
         }
@@ -358,7 +381,11 @@ void add_export_command(CLI::App& app, Shell& shell) {
                     "such as \"0,0,50 mm\" (default: the model's)");
     sub->add_flag(
         "--self-test", command->self_test,
-        "C: beside the header NAME_test.c, a program that compares it with what this program says at 200 points");
+        "C: beside the header NAME_test.c, a program that compares it with what this program says at 200 points, few "
+        "enough for a controller");
+    sub->add_flag(
+        "--prove", command->prove,
+        "C: compiles the header by cc and compares it at 10,000 points; nothing is written where they differ");
     sub->add_option("--motion", command->motion,
                     "FMU of a model: its motion in heave | heave-pitch | body, with states, contact and inputs");
     sub->add_option("--from", command->from,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cases/child_process.h"
 #include "core/file.h"
 #include "tests/support/support.h"
 
@@ -35,6 +36,25 @@ TEST(ExportCommand, WritesEveryFormatAndLeavesFilesOfOthersAlone) {
     EXPECT_EQ(into.exit_code, 3);
     EXPECT_THAT(into.errors, HasSubstr("name a file in it, such as inside/lift"));
     EXPECT_THAT(into.errors, testing::Not(HasSubstr("--force")));
+}
+
+TEST(ExportCommand, ProvesAHeaderBeforeItIsWritten) {
+    if (!cases::find_program("cc")) {
+        GTEST_SKIP() << "skipped: cc is not installed";
+    }
+    core::TemporaryFolder folder;
+    core::write_file(folder.path() / "lift.csv",
+                     "gap [mm], lift_force [N]\n1, .66\n2, .4\n3, .296\n5, .27\n10, .297\n");
+    const auto run = run_underbody({"export", "lift.csv", "--out", "lift.h", "--prove", "--json"}, folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto proof = nlohmann::json::parse(run.output).at("proof");
+    EXPECT_EQ(proof.at("points"), 10000);
+    EXPECT_EQ(proof.at("equal"), true);
+    EXPECT_THAT(run.errors, HasSubstr("equal: value, slope and error at 10,000 points"));
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "lift.h"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "lift_test.c")) << "it is no self-test";
+    EXPECT_EQ(run_underbody({"export", "lift.csv", "--out", "lift.json", "--prove"}, folder.path()).exit_code, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "lift.json"));
 }
 
 TEST(ExportCommand, TakesAModelWithWhatWasFoundInIt) {

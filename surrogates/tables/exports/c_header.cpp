@@ -532,7 +532,7 @@ void export_c(const ExportGrid& grid, const std::filesystem::path& path, ExportR
     } else {
         core::write_file(path, Writer(grid).text());
     }
-    if (grid.self_test) {
+    if (grid.self_test_points > 0) {
         write_c_self_test(grid, path, grid.fixed_point ? &bits : nullptr);
         result.files.push_back(c_self_test(path));
     }

@@ -14,8 +14,6 @@ namespace underbody::tables {
 
 namespace {
 
-constexpr std::size_t points_tried = 200;
-
 struct Point {
     std::array<double, max_axes> at{};
     bool outside = false, refused = false, no_data = false;
@@ -34,7 +32,7 @@ std::vector<Point> test_points(const ExportGrid& grid) {
                (grid.support.empty() ||
                 std::none_of(grid.support.lines()[k].begin(), grid.support.lines()[k].end(), near));
     };
-    while (points.size() < points_tried) {
+    while (points.size() < grid.self_test_points) {
         Point point;
         for (std::size_t k = 0; k < grid.axes.size(); ++k) {
             const ExportAxis& axis = grid.axes[k];
@@ -278,18 +276,19 @@ void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& head
                       coordinate = bits != nullptr ? number : name + "_real";
     std::string text =
         "/* Self-test of " + header.filename().string() + ", a force table by Underbody: compares it at " +
-        std::to_string(points_tried) + " points with what the program says.\n * cc -std=c99 " +
+        std::to_string(grid.self_test_points) + " points with what the program says.\n * cc -std=c99 " +
         c_self_test(header).filename().string() +
-        " && ./a.out; the exit code is 0 when all agree, else 1.\n"
+        " && ./a.out; the exit code is 0 when all agree, else 1. It says how many do not, and\n"
+        " * how far off a value is at most.\n"
         " * With -DUNDERBODY_NO_MAIN it is the function int " +
         name + "_self_test(void): the number of points that do not agree. */\n#include \"" +
         header.filename().string() + "\"\n\n" + array(number, name + "_test_points", numbers.at) +
         "/* outside, refused, no_data */\n" + array("unsigned char", name + "_test_flags", numbers.flags) +
         "/* of each quantity the value, its slopes and its error */\n" +
         array(number, name + "_test_wanted", numbers.wanted) + array(number, name + "_test_allowed", numbers.allowed);
-    text += "\nint " + name + "_self_test(void);\nint " + name +
+    text += "\nstatic " + wide + " " + name + "_test_worst = 0;\n\nint " + name + "_self_test(void);\nint " + name +
             "_self_test(void) {\n    int failed = 0;\n    unsigned i, k;\n    for (i = 0; i < " +
-            std::to_string(points_tried) + "u; ++i) {\n        const " + number + "* wanted = " + name +
+            std::to_string(grid.self_test_points) + "u; ++i) {\n        const " + number + "* wanted = " + name +
             "_test_wanted + " + width + "u * i;\n        const unsigned char* flags = " + name +
             "_test_flags + 3u * i;\n        " + coordinate + " point[" + axes + "];\n        " + name +
             "_result r;\n        " + wide + " got[" + width + "];\n        int good;\n        for (k = 0; k < " + axes +
@@ -308,13 +307,18 @@ void write_c_self_test(const ExportGrid& grid, const std::filesystem::path& head
         "0);\n        for (k = 0; k < " +
         width + "u; ++k) {\n            const " + wide +
         " off = got[k] - wanted[k];\n            const int error = k % " + std::to_string(n + 2) +
-        "u == " + std::to_string(n + 1) +
-        "u;\n            /* a refused point has no value and no slopes */\n            good = good && ((r.refused && "
-        "!error) || (off <= " +
-        name + "_test_allowed[k] && -off <= " + name +
-        "_test_allowed[k]));\n        }\n        failed += good ? 0 : 1;\n    }\n    return failed;\n}\n\n#ifndef "
-        "UNDERBODY_NO_MAIN\nint main(void) {\n    return " +
-        name + "_self_test() > 0 ? 1 : 0;\n}\n#endif\n";
+        "u == " + std::to_string(n + 1) + "u;\n            const int value = k % " + std::to_string(n + 2) +
+        "u == 0u && !r.refused;\n            const " + wide + " size = off < 0 ? -off : off;\n            " + name +
+        "_test_worst = value && size > " + name + "_test_worst ? size : " + name +
+        "_test_worst;\n            /* a refused point has no value and no slopes */\n            good = good && "
+        "((r.refused && "
+        "!error) || size <= " +
+        name +
+        "_test_allowed[k]);\n        }\n        failed += good ? 0 : 1;\n    }\n    return failed;\n}\n\n#ifndef "
+        "UNDERBODY_NO_MAIN\n#include <stdio.h>\nint main(void) {\n    const int failed = " +
+        name + "_self_test();\n    printf(\"%d of " + std::to_string(grid.self_test_points) + " differ; a value by " +
+        (bits != nullptr ? "%ld units" : "%.3g") + " at most\\n\", failed, " + (bits != nullptr ? "(long)" : "") +
+        name + "_test_worst);\n    return failed > 0 ? 1 : 0;\n}\n#endif\n";
     core::write_file(c_self_test(header), text);
 }
 

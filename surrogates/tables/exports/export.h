@@ -32,7 +32,8 @@ struct ExportOptions {
     std::vector<std::pair<std::string, std::size_t>> points;  ///< axis -> that many evenly spaced points
     bool overwrite = false;                                   ///< also files that this program did not write
     bool self_test = false;  ///< C: beside the header NAME_test.c, a program that compares it with what this program
-                             ///< says at many points
+                             ///< says at so many points
+    std::size_t self_test_points = 200;   ///< few enough for the memory of a controller
     std::vector<std::string> provenance;  ///< further lines on where the table comes from, for the head of the file
     /// Where the forces act: from the centre of gravity to the centre of the base, x forward, y starboard, z down, m.
     /// For formats that apply them to a body.

@@ -485,7 +485,7 @@ ExportGrid export_grid(const std::vector<ForceTable>& tables, const ExportOption
     grid.lever = options.lever;
     grid.single_precision = options.single_precision;
     grid.fixed_point = options.fixed_point;
-    grid.self_test = options.self_test;
+    grid.self_test_points = options.self_test ? options.self_test_points : 0;
     std::vector<Chosen> all;
     for (const ForceTable& table : tables) {
         all.push_back(chosen(table, options, straight, grid.remarks, progress));

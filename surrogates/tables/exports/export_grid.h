@@ -57,7 +57,7 @@ struct ExportGrid {
     core::Problems remarks;
     bool single_precision = false;
     bool fixed_point = false;
-    bool self_test = false;
+    std::size_t self_test_points = 0;  ///< 0: no self-test
 
     [[nodiscard]] const ExportQuantity& first() const { return quantities.front(); }
 };

@@ -305,6 +305,27 @@ TEST(ExportOfC, ComesWithASelfTestThatCanFail) {
     EXPECT_THROW(export_table(test::one_axis(), "json", folder.path() / "t.json", options), core::UsageError);
 }
 
+TEST(ExportOfC, SelfTestSaysHowManyDifferAndByHowMuch) {
+    if (!test::have("gcc")) {
+        GTEST_SKIP() << "skipped: gcc is not installed";
+    }
+    core::TemporaryFolder folder;
+    tables::ExportOptions options;
+    options.self_test = true;
+    for (const std::size_t points : {200U, 3000U}) {
+        options.self_test_points = points;
+        export_table(test::one_axis(), "c", folder.path() / "body.h", options);
+        const std::string count = std::to_string(points);
+        EXPECT_NE(core::read_file(folder.path() / "body_test.c").find("at " + count + " points"), std::string::npos);
+        ASSERT_EQ(std::system(("cd '" + folder.path().string() +
+                               "' && gcc -std=c99 body_test.c -o main -lm && ./main > said.txt")
+                                  .c_str()),
+                  0);
+        const std::string said = core::read_file(folder.path() / "said.txt");
+        EXPECT_EQ(said.find("0 of " + count + " differ; a value by "), 0U) << said;
+    }
+}
+
 TEST(ExportOfC, IsCleanForCppcheck) {
     if (!test::have("cppcheck")) {
         GTEST_SKIP() << "skipped: cppcheck is not installed";
