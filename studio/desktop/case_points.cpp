@@ -25,7 +25,18 @@ core::Figure lift_of_cases(const cases::Study& study, const cases::StudyResults&
             conditions.push_back(&entry);
         }
     }
-    const std::vector<cases::GapGroup> groups = cases::gap_groups(conditions);
+    std::vector<cases::GapGroup> groups = cases::gap_groups(conditions);
+    const auto by_one_number = [&groups](const cases::GapGroup& one) {
+        const auto& numbers = one.held.numbers;
+        return numbers.size() == 1 && one.held.texts.empty() &&
+               numbers.front().first == groups.front().held.numbers.front().first;
+    };
+    if (!groups.empty() && groups.front().held.numbers.size() == 1 &&
+        std::all_of(groups.begin(), groups.end(), by_one_number)) {
+        std::sort(groups.begin(), groups.end(), [](const cases::GapGroup& a, const cases::GapGroup& b) {
+            return a.held.numbers < b.held.numbers;  // as a legend is read
+        });
+    }
     core::Figure figure;
     figure.title = "lift of the cases over the gap";
     figure.x = {"gap", "mm", 0, 0, false};

@@ -220,7 +220,8 @@ cases::NewCases TakeInSheet::wanted() const {
     cases::NewCases cases;
     cases.files = pattern_->text().trimmed().toStdString();
     cases.symmetry = half_->currentData().toString().toStdString();
-    for (const auto part : core::split(conditions_->text().toStdString(), ',')) {
+    const std::string conditions = conditions_->text().toStdString();  // what is split are views of it
+    for (const auto part : core::split(conditions, ',')) {
         const std::string text(core::trimmed(part));
         const auto equal = text.find('=');
         if (text.empty()) {
