@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
         if (o.family != "all" && o.family != family) continue;
         const dynamics::Model model = dynamics::read_model(bench::write_declared_model(family, folder.path() / family));
         const auto cases = [&](const std::string& kind, const std::vector<std::string>& names, const std::string& law,
-                               double level, int shift = 0) {
+                               double level, int shift = 0, std::uint64_t draw = 0) {
             if (!campaign.wants(kind, names, law, level)) return;
             for (int s = 0; s < o.seeds; ++s) {
                 bench::Case wanted;
@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
                 wanted.names = names;
                 wanted.law = law;
                 wanted.level = level;
+                wanted.draw = draw;
                 wanted.seed = o.first_seed + static_cast<std::uint64_t>(s + shift);
                 wanted.coloured = wanted.seed % 4 == 1;
                 wanted.declared_noise = kind.rfind("noise", 0) == 0 ? (wanted.seed % 3 == 0   ? 0
@@ -77,9 +78,10 @@ int main(int argc, char** argv) {
             for (const std::string& name : bench::effects_of(family))
                 cases(level == 1 ? "single 1x" : "single 2x", {name}, "", level);
         }
+        std::uint64_t draw = 0;
         for (const double level : {0.4, 0.6, 0.8}) {  // verdicts that are not sure; only where asked for
             for (const std::string& name : bench::effects_of(family))
-                if (o.kind == "weak") cases("weak", {name}, "", level);
+                if (o.kind == "weak") cases("weak", {name}, "", level, 0, ++draw);
         }
         for (const std::string& law : bench::unknown_laws(family)) cases("unknown", {"unknown"}, law, 3);
         for (int k = 0; k < 5; ++k) cases("clean", {}, "", 0, 101 * k);

@@ -129,6 +129,11 @@ Forces with(const std::string& family, const std::vector<Law>& laws, const Point
     return f;
 }
 
+/// The part `stream` of a set's draws.
+core::Random draws_of(const Case& wanted, std::uint64_t stream) {
+    return wanted.draw == 0 ? core::Random(stream) : core::Random(stream, wanted.draw);
+}
+
 void shuffle(std::vector<Point>& points, core::Random& random) {
     for (std::size_t k = points.size(); k > 1; --k) {
         std::swap(points[k - 1], points[random.below(k)]);
@@ -340,8 +345,8 @@ double most_of(const Law& law, const std::vector<Point>& points) {
 }
 
 std::vector<Law> laws_of(const Case& wanted) {
-    core::Random random(wanted.seed * 6007 + 3);
-    core::Random layout(wanted.seed * 13 + 1);
+    core::Random random = draws_of(wanted, wanted.seed * 6007 + 3);
+    core::Random layout = draws_of(wanted, wanted.seed * 13 + 1);
     const std::vector<Point> points = set_points(wanted.family, false, layout);
     const bool unknown = wanted.names == std::vector<std::string>{"unknown"};
     std::vector<Law> laws;
@@ -405,7 +410,7 @@ Sample make_static(const Case& wanted) {
     if (wanted.names == std::vector<std::string>{"unknown"}) {
         sample.depends_on = depends_of(wanted.law, wanted.family);
     }
-    core::Random first(wanted.seed * 13 + 1), second(wanted.seed * 13 + 2);
+    core::Random first = draws_of(wanted, wanted.seed * 13 + 1), second = draws_of(wanted, wanted.seed * 13 + 2);
     sample.train = measure(wanted, laws, false, first);
     sample.test = measure(wanted, laws, true, second);
     return sample;
@@ -540,7 +545,7 @@ std::string Case::text() const {
     return out + law + " " + core::format_number(level, 3) + "x" + (coloured ? " coloured" : "") +
            (velocity ? " velocity" : "") +
            (declared_noise != 1 ? " noise x" + core::format_number(declared_noise, 2) : "") + " seed " +
-           std::to_string(seed);
+           std::to_string(seed) + (draw > 0 ? " draw " + std::to_string(draw) : "");
 }
 
 Sample make_sample(const Case& wanted) { return wanted.family == "heave" ? make_heave(wanted) : make_static(wanted); }

@@ -40,11 +40,16 @@ bool Outcome::right() const {
     return verdict != "none" && sorted(names) == sorted(truth);
 }
 
+bool Outcome::right_law() const {
+    return right() ||
+           (verdict == "effect" && truth.size() == 1 && names.size() == 1 && same_law(names.front(), truth.front()));
+}
+
 bool Outcome::tied() const {
     if (right() || verdict != "effect" || truth.empty()) {
         return false;
     }
-    if (truth.size() == 1 && names.size() == 1 && same_law(names.front(), truth.front())) {
+    if (right_law()) {
         return true;
     }
     // a rival of several effects is told as "gap_offset + sensor_gain", in any order
@@ -73,6 +78,9 @@ Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::str
     }
     one.variables = sorted(found.depends_on) == sorted(depends_on);
     one.stated = found.effects.empty() ? found.none_probability : found.effects.front().probability;
+    for (const auto& [rival, probability] : one.rivals) {
+        one.stated += one.names.size() == 1 && same_law(one.names.front(), rival) ? probability : 0;
+    }
     if (!found.error.empty()) {
         const discovery::ErrorChange& error = found.error.front();
         one.before = error.before.rmse / error.noise;
@@ -155,7 +163,7 @@ std::string calibration_lines(const std::vector<Outcome>& outcomes) {
         for (const Outcome& one : outcomes) {
             if (one.stated >= edges[b] && one.stated < edges[b + 1]) {
                 sum += one.stated;
-                right += one.right() ? 1 : 0;
+                right += one.right_law() ? 1 : 0;
                 n += 1;
             }
         }

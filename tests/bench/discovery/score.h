@@ -19,7 +19,7 @@ struct Outcome {
     std::vector<std::string> names;
     std::vector<std::pair<std::string, double>> rivals;
     bool variables = false;        ///< those of an unknown law were named rightly
-    double stated = std::nan("");  ///< probability of the verdict
+    double stated = std::nan("");  ///< probability of the verdict; of one law under two names that of both together
     double before = 0, after = 0;  ///< held-out RMSE of the chief quantity, in noise
     double best = std::nan("");    ///< the same with the true law refitted
     /// Error of predictions of fresh runs with the model as found over that with the model as declared; NaN: no such
@@ -29,6 +29,8 @@ struct Outcome {
     double seconds = 0;
 
     [[nodiscard]] bool right() const;
+    /// The same with a law under its other name, which only the rig tells from this one.
+    [[nodiscard]] bool right_law() const;
     /// The truth shares the probability with the verdict (at least a fifth), or is the same law under another name.
     [[nodiscard]] bool tied() const;
     [[nodiscard]] bool wrong() const { return verdict == "effect" && !right() && !tied(); }
