@@ -106,14 +106,22 @@ void share_out(double gate_p, const SmoothFit& rest, double left, bool any, cons
     }
     // a smooth step between the two verdicts: at the limits above the odds are even
     double unknown = 1 / (1 + std::exp(-12 * (left / calibration.unknown_share - 1)));
-    if (rest.p > calibration.unknown_p) {
-        unknown = std::min(unknown, 0.5 * calibration.unknown_p / rest.p);
-    }
-    result.none_probability =
-        gate_p >= calibration.gate ? 1 - 0.5 * calibration.gate / gate_p : 0.5 * gate_p / calibration.gate;
+    // and no surer than what is left is real: even odds at the limit of its chance
+    const double real = rest.p > calibration.unknown_p ? 0.5 * calibration.unknown_p / rest.p
+                                                       : 1 - 0.5 * rest.p / calibration.unknown_p;
+    unknown = std::min(unknown, real);
+    result.none_probability = gate_p >= calibration.even_none ? 1 - 0.5 * calibration.even_none / gate_p
+                                                              : 0.5 * gate_p / calibration.even_none;
     result.unknown_probability = (1 - result.none_probability) * unknown;
     for (Attribution::Share& share : result.shares) {
         share.probability *= (1 - result.none_probability) * (1 - unknown) / total;
+    }
+    for (Attribution::Share& share : result.shares) {
+        if (gate_p >= calibration.gate &&
+            share.probability > calibration.left_undecided) {  // not asked for, so not sure
+            result.unknown_probability += share.probability - calibration.left_undecided;
+            share.probability = calibration.left_undecided;
+        }
     }
     if (!any) {  // no name has anything to show: what they would share goes to what is left
         double& heir = gate_p >= calibration.gate ? result.none_probability : result.unknown_probability;

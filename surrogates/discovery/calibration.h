@@ -11,6 +11,7 @@ namespace underbody::discovery {
 /// The same for every data set of a kind.
 struct Calibration {
     double gate = 0.01;        ///< the gate opens below this chance
+    double even_none = 0.002;  ///< chance of as much structure from noise at which "none" has even odds
     double form_share = 0.01;  ///< share of what is explained that a law of another form may miss: widens probabilities
     double unknown_share = 0.15;   ///< share of the structure that the best name may leave before it is "unknown"
     double unknown_p = 0.002;      ///< and the chance below which what is left is real

@@ -221,6 +221,9 @@ void add_errors(const Discovery& d, nlohmann::json& json) {
                         {"unexplained_in_noise", d.rest.is_noise ? 0.0 : d.rest.unexplained / unit},
                         {"twins_in_noise", d.rest.twins / unit},
                         {"depends_on", d.rest.depends_on}};
+        if (d.rest.or_noise_figure) {
+            json["rest"]["or_noise_figure"] = true;
+        }
     }
 }
 

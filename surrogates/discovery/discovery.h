@@ -101,6 +101,8 @@ struct UnexplainedRest {
     double twins = 0;        ///< held-out error of the twins, in the unit of the first error; 0: not simulated
     double unexplained = 0;  ///< root of the difference of squares, in that unit
     bool is_noise = true;    ///< the error is no more than the allowed factor above the twins'
+    /// Static: it may as well be noise, of a declared figure that is too small and has no repeats to be judged by.
+    bool or_noise_figure = false;
     std::vector<std::string> depends_on;
 };
 

@@ -239,4 +239,17 @@ void rule_out_none(Attribution& attribution, double unknown) {
     }
 }
 
+void give_to_none(Attribution& attribution, double none) {
+    double sum = attribution.unknown_probability;
+    for (const Attribution::Share& share : attribution.shares) {
+        sum += share.probability;
+    }
+    const double factor = sum > 0 ? (1 - none) / sum : 0;
+    attribution.unknown_probability *= factor;
+    for (Attribution::Share& share : attribution.shares) {
+        share.probability *= factor;
+    }
+    attribution.none_probability = none;
+}
+
 }  // namespace underbody::discovery

@@ -70,4 +70,7 @@ void give_to_unknown(Attribution& attribution, double part);
 /// Something is missing for certain: nothing is left to "none", `unknown` gets at least that much, names the rest.
 void rule_out_none(Attribution& attribution, double unknown);
 
+/// "None" gets `none`; names and `unknown` share the rest as before.
+void give_to_none(Attribution& attribution, double none);
+
 }  // namespace underbody::discovery

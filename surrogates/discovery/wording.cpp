@@ -109,9 +109,20 @@ std::string verdict_names(const Discovery& discovery) {
     return text;
 }
 
+namespace {
+
+/// Of a verdict "none" whose probability is stated.
+bool is_unsure(const Discovery& discovery) {
+    return discovery.mended.empty() && discovery.none_probability > 0 && discovery.none_probability < 0.5;
+}
+
+}  // namespace
+
 std::string headline(const Discovery& discovery) {
     if (discovery.verdict == "none") {
-        return discovery.structure ? "No effect is named" : "Nothing is missing from the model";
+        return discovery.structure || discovery.rest.or_noise_figure || is_unsure(discovery)
+                   ? "No effect is named"
+                   : "Nothing is missing from the model";
     }
     if (discovery.verdict == "unknown") {
         return "Something is missing that the catalogue does not know: it depends on " + list_of(discovery.depends_on);
@@ -264,6 +275,25 @@ std::string unconfirmed_sentence(const Discovery& discovery) {
            (discovery.mended.empty() ? "" : " The logs were read anew: " + discovery.mended + "; the model says so.");
 }
 
+/// Readings that scatter by more than their declared noise, and follow nothing.
+std::string noise_or_missing_sentence(const Discovery& discovery) {
+    const ErrorChange& chief = discovery.error.front();
+    return "No effect is named: " + chief.channel + error_is_on(discovery) + " scatters by " +
+           core::format_number(chief.before.rmse / std::max(chief.noise, 1e-300), 2) +
+           " of its declared noise and follows no variable that was measured. The noise figure is too small, or "
+           "something is missing that looks like noise: without repeats of set points this cannot be told. Measure "
+           "some set points several times.";
+}
+
+/// Too little structure for a name, and too much to be sure that nothing is missing.
+std::string unsure_sentence(const Discovery& discovery) {
+    return "No effect is named, and it is not sure that nothing is missing: the chance of as much structure in noise "
+           "is " +
+           core::format_number(discovery.gate, 2) + ", too much for a name" +
+           (discovery.alternatives.empty() ? std::string() : "; nearest is " + named(discovery.alternatives.front())) +
+           ". More readings would tell.";
+}
+
 }  // namespace
 
 std::string error_is_on(const Discovery& discovery) { return error_is_on(discovery.held_out); }
@@ -281,8 +311,14 @@ std::string verdict_sentence(const Discovery& discovery) {
                   (discovery.error.front().after.rmse > discovery.error.front().before.rmse ? " rises from "
                                                                                             : " falls from ") +
                   error_text(discovery.error.front()) + "." + worse_elsewhere(discovery);
+    if (discovery.verdict == "none" && discovery.rest.or_noise_figure && !discovery.error.empty()) {
+        return noise_or_missing_sentence(discovery);
+    }
     if (discovery.verdict == "none" && discovery.structure) {
         return unconfirmed_sentence(discovery) + error;
+    }
+    if (discovery.verdict == "none" && is_unsure(discovery)) {
+        return unsure_sentence(discovery);
     }
     if (discovery.verdict == "none") {
         return (discovery.mended.empty()

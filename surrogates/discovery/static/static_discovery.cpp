@@ -2,6 +2,7 @@
 // the noise.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -54,7 +55,7 @@ Discovery StaticLoop::run() {
 }
 
 void StaticLoop::estimate_noise() {
-    experiment_.estimate_noise();
+    experiment_.estimate_noise(overrule_noise_);
     if (test_experiment_) {
         test_experiment_->set_noise(experiment_.noise());
     }
@@ -170,15 +171,37 @@ void StaticLoop::fit_singles() {
     singles_ = fitted_.size();
 }
 
+bool StaticLoop::is_slow(Channel channel) const {
+    constexpr double together = 0.5;  // correlation of neighbours
+    std::vector<double> values;
+    for (const std::size_t i : train_) {
+        const Observation& one = experiment_.observations()[i];
+        if (one.quantity == experiment_.observations()[train_.front()].quantity) {
+            values.push_back(one.at[channel]);
+        }
+    }
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    for (double& value : values) {  // by rank: gaps may stand in any ratio to each other
+        value = static_cast<double>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+    }
+    return autocorrelation(values, 1) > together;
+}
+
 std::vector<double> StaticLoop::left_over() const {
     const std::size_t best = best_hypothesis(fitted_, 2);
     std::vector<double> left = best < fitted_.size() ? fitted_[best].fit.residuals : null_residuals_;
     const StaticStructure structure(experiment_, train_);
+    std::map<Channel, bool> slow;
+    for (const Channel channel : experiment_.varying()) {
+        slow[channel] = is_slow(channel);
+    }
     for (const StaticStructure::Test& test : structure.tests()) {
-        // coloured noise alone makes a slow wave over time; only what is far more than that is no colour
-        const bool slow = test.variables.front() == Channel::time;
+        // coloured noise alone makes a slow wave over time, and over what was changed slowly (a voltage held for a
+        // sweep of gaps); only what is far more than that is no colour
         const double colour_alone = 50 + 5 * static_cast<double>(test.basis.columns);
-        if (test.variables.size() == 1 && (!slow || explained_square(test.basis, left) > colour_alone)) {
+        if (test.variables.size() == 1 &&
+            (!slow.at(test.variables.front()) || explained_square(test.basis, left) > colour_alone)) {
             take_out(test.basis, left);
         }
     }

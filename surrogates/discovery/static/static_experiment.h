@@ -32,6 +32,9 @@ struct NoiseFigure {
     std::string from;      ///< "declared", "estimated", "declared value found wrong, estimated"
     double declared = 0;   ///< 0: none
     double estimated = 0;  ///< from the scatter between repeats and smooth neighbours; 0: could not be had
+    /// The declared figure is less than what smooth laws leave, and no set point has the repeats that could overrule
+    /// it.
+    bool doubted = false;
 };
 
 /// The channels that make a set point; the others (time, temperature, direction) come along with it.
@@ -68,8 +71,8 @@ public:
     /// Marks readings that no estimate shall count.
     void mark_accidents(const std::vector<std::size_t>& observations);
     /// Estimates noise from scatter that no smooth law of the varying channels explains, and compares it with the
-    /// declared one.
-    void estimate_noise();
+    /// declared one. `overrule`: that scatter is the noise also where it is no scatter of repeats.
+    void estimate_noise(bool overrule = false);
 
     /// Looks for colour in residuals (neighbours in time that tell one story) and from then on whitens with it: an
     /// autoregression of fourth order for each measured quantity (Yule and Walker), where a portmanteau test (Ljung and

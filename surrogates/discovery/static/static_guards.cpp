@@ -109,6 +109,26 @@ bool StaticLoop::correct(const FittedHypothesis* before) {
     return false;
 }
 
+bool StaticLoop::noise_figure_may_be_wrong() const {
+    bool doubted = false;
+    for (const auto& [quantity, figure] : experiment_.noise()) {
+        if (figure.doubted && figure.estimated > calibration_.most_over_declared * figure.declared) {
+            return false;
+        }
+        doubted = doubted || figure.doubted;
+    }
+    if (!doubted) {
+        return false;
+    }
+    DiscoverOptions plain = options_;
+    plain.figures = plain.consequence = false;
+    plain.placebo_twins = 0;
+    StaticLoop again(model_, data_, plain, progress_);
+    again.overrule_noise_ = true;
+    const Discovery seen = again.run();
+    return seen.verdict == "none" && !seen.structure;
+}
+
 /// A name needs a held-out error that falls, and a name and "none" a rest that is noise.
 void StaticLoop::guard() {
     uses_.clear();
@@ -138,6 +158,11 @@ void StaticLoop::guard() {
         result_.verdict = "unknown";
         rule_out_none(attribution_, correct(nullptr) ? calibration_.given_to_unknown : calibration_.left_undecided);
         result_.rest.is_noise = rest_is_noise(held_out_errors(uses_));
+    }
+    if (result_.verdict == "unknown" && uses_.empty() && noise_figure_may_be_wrong()) {
+        result_.verdict = "none";
+        result_.rest.or_noise_figure = true;
+        give_to_none(attribution_, calibration_.left_undecided);
     }
     rest_in_noise_ = std::sqrt(std::max(0.0, std::pow(held_out_errors(uses_).rmse(), 2) - 1));
     result_.none_probability = attribution_.none_probability;

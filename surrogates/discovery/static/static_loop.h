@@ -29,8 +29,10 @@ private:
     /// A change over the gap at a length that was not measured is no such change: it would pass for a gain.
     void keep_lengths_inside(std::vector<Hypothesis>& candidates) const;
     [[nodiscard]] FittedHypothesis fitted(const Hypothesis& hypothesis) const;
-    /// What neither the best single effect nor a smooth function of one channel explains; of time only what is far too
-    /// much for colour.
+    /// Whether a channel changes little from one reading to the next, in the order of measurement, as time does.
+    [[nodiscard]] bool is_slow(dynamics::Channel channel) const;
+    /// What neither the best single effect nor a smooth function of one channel explains; of a slow one only what is
+    /// far too much for colour.
     [[nodiscard]] std::vector<double> left_over() const;
     /// One bad reading would pass for an effect, or for more noise than there is.
     void leave_accidents_out();
@@ -83,6 +85,9 @@ private:
     /// Puts a smooth correction in the place of uses_ where the error of set points that it was not fitted to falls
     /// with it from that of `before` (nullptr: the model as declared); false: leaves them.
     bool correct(const FittedHypothesis* before);
+    /// Whether nothing is missing once a declared noise figure that only repeats of set points could overrule is taken
+    /// to be too small: the same readings judged again with what smooth laws leave as their noise.
+    [[nodiscard]] bool noise_figure_may_be_wrong() const;
     void guard();
 
     // static_null_simulation.cpp
@@ -114,6 +119,7 @@ private:
     SmoothFit rest_;   ///< and of what the best explanation leaves
     double gate_ = 1;
     double rest_in_noise_ = 0;
+    bool overrule_noise_ = false;  ///< of a second look: noise_figure_may_be_wrong()
     Attribution attribution_;
     std::vector<dynamics::EffectUse> uses_;  ///< what goes into the model
     Discovery result_;

@@ -150,7 +150,7 @@ private:
 
 }  // namespace
 
-void StaticExperiment::estimate_noise() {
+void StaticExperiment::estimate_noise(bool overrule) {
     std::erase_if(problems_,
                   [](const core::Problem& problem) { return problem.message.rfind("the declared noise of ", 0) == 0; });
     for (std::size_t q = 0; q < quantities_.size(); ++q) {
@@ -161,8 +161,9 @@ void StaticExperiment::estimate_noise() {
         figure.estimated = scatter.estimated();
         const double ratio = figure.declared > 0 && figure.estimated > 0 ? figure.estimated / figure.declared : 1;
         const bool apart = std::abs(std::log(ratio)) > std::max(0.15, 3.5 * scatter.spread());
-        const bool wrong = apart && (ratio < 1 || scatter.of_repeats());
-        if (apart && !wrong) {
+        const bool wrong = apart && (ratio < 1 || scatter.of_repeats() || overrule);
+        figure.doubted = apart && !wrong;
+        if (figure.doubted) {
             problems_.push_back({core::Problem::Severity::note,
                                  "the declared noise of " + quantities_[q] + " (" +
                                      core::format_number(figure.declared, 3) + " " + figure.unit +

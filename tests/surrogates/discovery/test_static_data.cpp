@@ -3,6 +3,7 @@
 
 #include "make_data.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/wording.h"
 
 using namespace underbody;
 using namespace underbody::discovery;
@@ -189,4 +190,121 @@ TEST(OddStaticData, ADeclaredNoiseTwiceTooLargeIsFoundOut) {
     const Discovery found = bench.found();
     EXPECT_NE(found.noise.at("lift_force").from.find("wrong"), std::string::npos);
     EXPECT_EQ(found.verdict, "none") << found.sentence;
+}
+
+namespace {
+
+/// A bench that was at each of 12 gaps and 9 voltages once, in drawn order; readings scatter by 1 mN.
+dynamics::Measurements once_each(const std::filesystem::path& folder, double offset, double declared_noise) {
+    test::write_bench(folder, declared, 1);
+    std::vector<std::pair<double, double>> points;
+    for (const double gap : {2.0, 4.0, 6.0, 9.0, 14.0, 20.0, 30.0, 45.0, 70.0, 110.0, 200.0, 400.0}) {
+        for (int voltage = 4; voltage <= 12; ++voltage) {
+            points.emplace_back(gap, voltage);
+        }
+    }
+    core::Random random(5);
+    std::string rows = "time [s], gap [mm], jet_voltage [V], lift_force [N]\n";
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        std::swap(points[k], points[k + random.below(points.size() - k)]);
+        const auto [gap, voltage] = points[k];
+        rows += test::written(60.0 * static_cast<double>(k)) + ", " + test::written(gap) + ", " +
+                test::written(voltage) + ", " +
+                test::written(declared(gap / 1000 + offset, voltage) + 1e-3 * random.normal()) + "\n";
+    }
+    core::write_file(folder / "bench.csv", rows);
+    dynamics::Measurements data = dynamics::read_measurements(folder);
+    data.noise["lift_force"] = declared_noise;
+    return data;
+}
+
+}  // namespace
+
+TEST(OddStaticData, ANoiseFigureTooSmallWithoutRepeatsIsNotToldFromSomethingMissing) {
+    Bench bench;
+    bench.data = once_each(bench.folder.path(), 0, 5e-4);  // half of the truth
+    const Discovery found = bench.found();
+    EXPECT_EQ(found.verdict, "none") << found.sentence;  // "unknown" before
+    EXPECT_NE(found.sentence.find("without repeats of set points this cannot be told"), std::string::npos)
+        << found.sentence;
+    EXPECT_EQ(headline(found), "No effect is named");
+    EXPECT_DOUBLE_EQ(found.none_probability, 0.5);
+    EXPECT_FALSE(found.rest.is_noise) << "the declared figure stands";
+    EXPECT_EQ(found.noise.at("lift_force").from, "declared");
+    for (const FoundEffect& one : found.alternatives) {
+        EXPECT_LE(one.probability, 0.5);
+    }
+}
+
+TEST(OddStaticData, ANoiseFigureTooSmallHidesNothingThatIsThere) {
+    Bench bench;
+    bench.data = once_each(bench.folder.path(), 2e-3, 5e-4);
+    const Discovery found = bench.found();
+    EXPECT_NE(found.verdict, "none") << found.sentence;
+    EXPECT_FALSE(found.rest.or_noise_figure) << found.sentence;
+}
+
+TEST(OddStaticData, ANoiseFigureFarTooSmallIsNoNoise) {
+    Bench bench;
+    bench.data = once_each(bench.folder.path(), 0, 2e-4);  // a fifth of the truth: beyond any doubt of a figure
+    const Discovery found = bench.found();
+    EXPECT_NE(found.verdict, "effect") << found.sentence;
+    EXPECT_FALSE(found.rest.or_noise_figure) << found.sentence;
+}
+
+namespace {
+
+/// 18 sweeps over 16 gaps, each at a voltage held, with noise of 1 mN that goes together over some five readings.
+dynamics::MeasuredRun sweeps(core::Random& random) {
+    std::vector<double> time, gap, voltage, direction, lift;
+    double slow = 0;
+    for (int sweep = 0; sweep < 18; ++sweep) {
+        for (int g = 0; g < 16; ++g) {
+            direction.push_back(sweep % 2 == 0 ? 1 : -1);
+            gap.push_back(2e-3 * std::pow(1.5, sweep % 2 == 0 ? g : 15 - g));
+            voltage.push_back(4 + 7 * sweep % 9);
+            time.push_back(60.0 * static_cast<double>(time.size()));
+            slow = 0.8 * slow + 0.6 * random.normal();
+            lift.push_back(declared(gap.back(), voltage.back()) + 8e-4 * random.normal() + 6e-4 * slow);
+        }
+    }
+    dynamics::MeasuredRun run;
+    run.name = run.table.source = "sweeps";
+    run.table.add_numbers("time", "s", time);
+    run.table.add_numbers("gap", "m", gap);
+    run.table.add_numbers("jet_voltage", "V", voltage);
+    run.table.add_numbers("approach_direction", "1", direction);
+    run.table.add_numbers("lift_force", "N", lift);
+    return run;
+}
+
+}  // namespace
+
+TEST(OddStaticData, ColouredNoiseIsSeenThoughAVoltageIsHeldForAWholeSweep) {
+    // what is changed as slowly as time explains slow noise as well as time does
+    int seen = 0;
+    Bench bench;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        core::Random random(seed);
+        bench.data.runs = {sweeps(random), sweeps(random)};
+        bench.data.runs.back().use = dynamics::RunUse::test;
+        const Discovery found = bench.found();
+        EXPECT_EQ(found.verdict, "none") << found.sentence;
+        seen += says(found, "coloured noise") ? 1 : 0;
+    }
+    EXPECT_GE(seen, 5);
+}
+
+TEST(OddStaticData, NothingMissingThatIsNotSureIsSaid) {
+    Discovery found;
+    found.verdict = "none";
+    found.gate = 0.3;
+    found.none_probability = 0.98;
+    EXPECT_EQ(headline(found), "Nothing is missing from the model");
+    EXPECT_EQ(verdict_sentence(found).rfind("Nothing is missing: ", 0), 0U);
+    found.gate = 0.004;
+    found.none_probability = 0.2;
+    EXPECT_EQ(headline(found), "No effect is named");
+    EXPECT_NE(verdict_sentence(found).find("not sure that nothing is missing"), std::string::npos);
+    EXPECT_NE(verdict_sentence(found).find("0.004"), std::string::npos);
 }
