@@ -10,6 +10,7 @@
 //   varied, how the mesh was made, loads with NAME_sigma, state.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -65,6 +66,18 @@ struct DesignRun {
     [[nodiscard]] bool usable() const { return state == "solved" && counts(); }
 };
 
+/// What a sensitivity is of: a load over the shape's variables and the conditions, or an objective or limit that is a
+/// number of curves, over the shape's variables.
+struct LearnedNumber {
+    LearnedNumber(const tables::Surrogate& surrogate);  // NOLINT(google-explicit-constructor)
+    LearnedNumber() = default;
+    std::string name, unit;
+    bool of_curves = false;
+    std::vector<tables::SearchVariable> variables;
+    std::function<double(std::span<const double>)> value;  ///< SI
+    std::function<tables::ResponseValue(std::span<const double>)> with_error;
+};
+
 class Design {
 public:
     /// Of a study with [design]. Reads plan and results where they are. Throws core::InputError: no [design], a plan or
@@ -107,8 +120,8 @@ public:
     [[nodiscard]] std::optional<tables::TrustRegion> trust_region(const tables::DesignSearch& search) const;
     /// The shape at a design. Throws core::InputError where there is none.
     [[nodiscard]] geometry::BodyShape shape_at(const std::vector<double>& at) const;
-    /// Indices of a quantity over the shape's variables and the conditions, of the surrogate's mean.
-    [[nodiscard]] tables::SobolIndices sensitivity(const tables::Surrogate& surrogate) const;
+    /// Indices over its variables, of the mean.
+    [[nodiscard]] tables::SobolIndices sensitivity(const LearnedNumber& number) const;
 
     /// Hash of the shape that is varied and of the definitions of objectives and limits: a prediction of others is no
     /// prediction of these.
@@ -138,6 +151,10 @@ private:
     DesignTable plan_file_, results_file_;
     bool rows_changed_ = false;  ///< results.csv has rows that say otherwise than runs_
 };
+
+/// Of all loads and all numbers of curves that [design] asks for. They point to nothing.
+std::vector<LearnedNumber> learned_numbers(const Design& design,
+                                           const std::map<std::string, tables::Surrogate>& surrogates);
 
 /// The report: plan, fits with their check, sensitivities, the best, the front. `renderer` may be empty: no pictures.
 std::string design_report(const Design& design, const FigureRenderer& renderer,

@@ -32,6 +32,9 @@ std::string spaced(std::string name) {
     return name;
 }
 
+/// Of numbers of curves.
+constexpr const char* below_zero = ". Below zero there is none, and it is missed by so much.";
+
 /// What a plot calls a quantity.
 std::string label(const std::string& quantity) {
     const auto* known = core::find_quantity(quantity);
@@ -40,13 +43,12 @@ std::string label(const std::string& quantity) {
 
 }  // namespace
 
-std::vector<OneAtATime> along(const Surrogate& surrogate, std::vector<double> at, std::size_t variable,
+std::vector<OneAtATime> along(const LearnedNumber& number, std::vector<double> at, std::size_t variable,
                               std::size_t count) {
     std::vector<OneAtATime> result;
     for (std::size_t i = 0; i < count; ++i) {
-        at[variable] =
-            surrogate.variables()[variable].unscaled(static_cast<double>(i) / static_cast<double>(count - 1));
-        const auto p = surrogate.at(at);
+        at[variable] = number.variables[variable].unscaled(static_cast<double>(i) / static_cast<double>(count - 1));
+        const auto p = number.with_error(at);
         result.push_back({at[variable], p.value, p.sigma});
     }
     return result;
@@ -92,9 +94,9 @@ Figure left_out_figure(const Surrogate& surrogate) {
     return figure;
 }
 
-Figure sensitivity_figure(const Surrogate& surrogate, const tables::SobolIndices& indices) {
+Figure sensitivity_figure(const LearnedNumber& number, const tables::SobolIndices& indices) {
     Figure figure;
-    figure.title = "What " + label(surrogate.quantity()) + " depends on";
+    figure.title = "What " + label(number.name) + " depends on";
     figure.caption =
         "Sobol's indices of the surrogate's mean over the ranges searched: a variable alone, and with all its "
         "interactions; bars are 95 % intervals of the sampling.";
@@ -103,9 +105,9 @@ Figure sensitivity_figure(const Surrogate& surrogate, const tables::SobolIndices
         core::FigureBars bars;
         bars.name = total ? "with interactions" : "alone";
         bars.colour = core::palette(total ? 1 : 0);
-        for (std::size_t v = 0; v < surrogate.variables().size(); ++v) {
+        for (std::size_t v = 0; v < number.variables.size(); ++v) {
             const tables::SobolIndex& index = (total ? indices.total : indices.first)[v];
-            bars.labels.push_back(spaced(surrogate.variables()[v].name));
+            bars.labels.push_back(spaced(number.variables[v].name));
             bars.values.push_back(index.value);
             bars.errors.push_back(0.5 * (index.upper - index.lower));
         }
@@ -114,27 +116,28 @@ Figure sensitivity_figure(const Surrogate& surrogate, const tables::SobolIndices
     return figure;
 }
 
-Figure one_at_a_time_figure(const Surrogate& surrogate, const std::vector<double>& at) {
+Figure one_at_a_time_figure(const LearnedNumber& number, const std::vector<double>& at) {
     Figure figure;
-    figure.title = label(surrogate.quantity()) + ", one number at a time";
+    figure.title = label(number.name) + ", one number at a time";
     figure.caption = "The surrogate's mean along each variable, the others held at";
+    const std::string unit(core::told_unit(number.unit));
     figure.x = {"share of the variable's range", "", 0, 1};
-    figure.y = {label(surrogate.quantity()), surrogate.unit()};
-    const auto& variables = surrogate.variables();
+    figure.y = {label(number.name), unit};
+    const auto& variables = number.variables;
     for (std::size_t v = 0; v < variables.size(); ++v) {
         core::FigureCurve curve;
         curve.name = spaced(variables[v].name);
         curve.colour = v % 8 == 7 ? grey : core::palette(v);  // yellow is no line on white
         curve.dashed = !variables[v].of_shape;
-        for (const OneAtATime& point : along(surrogate, at, v, 41)) {
+        for (const OneAtATime& point : along(number, at, v, 41)) {
             curve.x.push_back(variables[v].scaled(point.at));
-            curve.y.push_back(point.value);
+            curve.y.push_back(core::convert(point.value, number.unit, unit));
         }
         figure.curves.push_back(curve);
         figure.caption +=
             (v > 0 ? ", " : " ") + spaced(variables[v].name) + " " + geometry::shown_value(at[v], variables[v].unit, 4);
     }
-    figure.caption += ". Dashed: conditions.";
+    figure.caption += number.of_curves ? below_zero : ". Dashed: conditions.";
     return figure;
 }
 
@@ -158,6 +161,7 @@ Figure convergence_figure(const Design& design, const tables::DesignSearch& sear
         "The first objective as the surrogate gives it for each design that was run, and the best of those "
         "that meet the limits.";
     figure.x = {"design", ""};
+    figure.caption += objective.response.curve ? std::string(below_zero).substr(1) : "";
     const ToldResponse told(search, objective.response);
     figure.y = {spaced(objective.response.name), told.unit};
     core::FigurePoints points;
@@ -259,6 +263,9 @@ Figure front_figure(const Design& design, const tables::DesignSearch& search, co
     figure.caption +=
         ", by the surrogates; bars are one standard deviation. Outlines: sections of bodies at their "
         "points, nose to the right, where there is room.";
+    if (objectives[0].response.curve || objectives[1].response.curve) {
+        figure.caption += std::string(" Kicks and windows below zero: there is none.");
+    }
     const ToldResponse first(search, objectives[0].response), second(search, objectives[1].response);
     figure.x = {spaced(objectives[0].response.name), first.unit};
     figure.y = {spaced(objectives[1].response.name), second.unit};

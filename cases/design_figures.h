@@ -10,18 +10,18 @@ namespace underbody::cases {
 
 /// Predicted against computed, each shape left out once: with bands.
 core::Figure left_out_figure(const tables::Surrogate& surrogate);
-core::Figure sensitivity_figure(const tables::Surrogate& surrogate, const tables::SobolIndices& indices);
+core::Figure sensitivity_figure(const LearnedNumber& number, const tables::SobolIndices& indices);
 
 struct OneAtATime {
     double at = 0, value = 0, sigma = 0;  ///< SI
 };
 /// `count` points over the range of one variable, the others held at `at` (SI).
-std::vector<OneAtATime> along(const tables::Surrogate& surrogate, std::vector<double> at, std::size_t variable,
+std::vector<OneAtATime> along(const LearnedNumber& number, std::vector<double> at, std::size_t variable,
                               std::size_t count);
 /// The middle of every range.
 std::vector<double> middle_of(const std::vector<tables::SearchVariable>& variables);
 /// A curve a variable, through `at`.
-core::Figure one_at_a_time_figure(const tables::Surrogate& surrogate, const std::vector<double>& at);
+core::Figure one_at_a_time_figure(const LearnedNumber& number, const std::vector<double>& at);
 
 /// The best valid value of the first objective by the order of the runs.
 core::Figure convergence_figure(const Design& design, const tables::DesignSearch& search);

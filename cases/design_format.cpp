@@ -1,6 +1,7 @@
 // The tables of [design] for the format of study.toml.
 #include <algorithm>
 
+#include "cases/design_curves.h"
 #include "cases/design_spec.h"
 #include "core/text.h"
 
@@ -12,11 +13,14 @@ std::vector<FileTable> design_tables() {
     const core::FileKey at{"*", "1", "gap = \"5 mm\"", "", "a condition that takes several values in [design]"};
     const auto response = [](std::vector<core::FileKey> more) {
         std::vector<core::FileKey> keys = {
-            {"quantity", "text", "\"lift_force\"", "", "one of design.quantities"},
+            {"quantity", "text", "\"lift_force\"", "",
+             "one of design.quantities; of a pitch window pitch_moment where left out"},
             {"slope_along", "text", "\"pitch\"", "none", "its slope along this condition, not its value"},
             {"half_width", "rad or m or m/s", "\"1 deg\"", "1 deg, 1 mm, 1 mm/s",
              "the slope is the difference over twice this"},
             {"name", "text", "\"lift\"", "made of the others", "what it is called in tables"}};
+        const auto of_curves = curve_keys();
+        keys.insert(keys.end(), of_curves.begin(), of_curves.end());
         keys.insert(keys.end(), more.begin(), more.end());
         return keys;
     };
@@ -64,6 +68,8 @@ std::vector<FileTable> design_tables() {
          {{"at_least", "m^3", "\"1 L\"", "0", "lower limit"}, {"at_most", "m^3", "\"4 L\"", "none", "upper limit"}}}};
     const auto of_jet = jet_axis_keys();
     tables.front().keys.insert(tables.front().keys.end(), of_jet.begin(), of_jet.end());
+    const auto for_curves = keys_for_curves();
+    tables.front().keys.insert(tables.front().keys.end(), for_curves.begin(), for_curves.end());
     const auto of_mesh = case_mesh_keys("the name, where it is one of these, else medium");
     const auto fidelity = std::find_if(tables.begin(), tables.end(),
                                        [](const FileTable& table) { return table.path == "design.fidelity[]"; });

@@ -209,6 +209,13 @@ std::string Design::what_is_asked() const {
         for (const auto& condition : response.conditions) {
             hash.add(condition.name).add(condition.value);
         }
+        if (response.curve) {
+            const tables::CurveAsked& asked = *response.curve;
+            hash.add(tables::to_string(asked.curve))
+                .add(asked.net_weight.value_or(std::nan("")))
+                .add(asked.virtual_mass);
+            hash.add(asked.about).add(asked.restoring ? 1.0 : 0.0).add(asked.most_moment).add(asked.moment);
+        }
     };
     for (const auto& objective : spec_.objectives) {
         add(objective.response);

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "cases/design_curves.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "geometry/body/variants.h"
+#include "surrogates/tables/search/curve_forces.h"
 
 namespace underbody::cases {
 
@@ -47,6 +50,19 @@ public:
                 runs_.push_back(&run);
             }
         }
+    }
+
+    /// The values of a condition that were run.
+    [[nodiscard]] std::vector<double> values(const std::string& condition) const {
+        std::set<double> found;
+        for (std::size_t v = shape_; v < all_.size(); ++v) {
+            for (const DesignRun* run : runs_) {
+                if (all_[v].name == condition) {
+                    found.insert(run->at[v]);
+                }
+            }
+        }
+        return {found.begin(), found.end()};
     }
 
     /// Adds `weight` times the quantity at the conditions to the weights of runs. False: out of reach.
@@ -91,6 +107,76 @@ private:
     std::vector<const DesignRun*> runs_;
 };
 
+using Weights = std::map<const DesignRun*, double>;
+
+struct WeightedSums {
+    std::vector<double> value, covariance;  ///< covariance [i * sums + j], of the stated errors of the runs
+};
+
+/// Nothing where one of the runs lacks the load.
+std::optional<WeightedSums> weighted_sums(const std::vector<Weights>& sums, const std::string& quantity) {
+    WeightedSums result{std::vector<double>(sums.size(), 0.0), std::vector<double>(sums.size() * sums.size(), 0.0)};
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        for (const auto& [run, weight] : sums[i]) {
+            const auto load = run->loads.find(quantity), sigma = run->sigmas.find(quantity);
+            if (load == run->loads.end()) {
+                return {};
+            }
+            result.value[i] += weight * load->second;
+            for (std::size_t j = 0; sigma != run->sigmas.end() && j < sums.size(); ++j) {
+                const auto other = sums[j].find(run);
+                result.covariance[i * sums.size() + j] +=
+                    other == sums[j].end() ? 0 : weight * other->second * sigma->second * sigma->second;
+            }
+        }
+    }
+    return result;
+}
+
+/// Of the curves through a design's own runs, as `table equilibria` goes through such points.
+std::optional<ResponseValue> computed_curve(const OwnRuns& own, std::map<std::string, double> at,
+                                            const tables::CurveAsked& asked) {
+    constexpr std::size_t fewest = 3;
+    const auto along = asked.runs_over();
+    const auto nodes = [&](const std::string& condition) {
+        return std::find(along.begin(), along.end(), condition) == along.end() ? std::vector<double>{0}
+                                                                               : own.values(condition);
+    };
+    tables::CurveForces forces{nodes("gap"), nodes("pitch"), {}, {}};
+    forces.between = tables::SlopeRule::monotone;
+    std::vector<Weights> weights;
+    for (const double pitch : forces.pitches) {
+        for (const double gap : forces.gaps) {
+            for (const std::string& condition : along) {
+                at[condition] = condition == "gap" ? gap : pitch;
+            }
+            weights.emplace_back();
+            if (!own.add(at, 1, weights.back())) {
+                return {};
+            }
+        }
+    }
+    for (const std::string& condition : along) {
+        if (nodes(condition).size() < fewest) {
+            return {};
+        }
+    }
+    tables::CurveErrors errors;
+    const auto take = [&](bool asked_for, const std::string& quantity, std::vector<double>& values,
+                          std::vector<double>& covariance) {
+        const auto sums = asked_for ? weighted_sums(weights, quantity) : WeightedSums{};
+        values = sums ? sums->value : std::vector<double>{};
+        covariance = sums ? sums->covariance : std::vector<double>{};
+        return sums.has_value();
+    };
+    if (!take(asked.net_weight.has_value(), "lift_force", forces.lift, errors.lift) ||
+        !take(asked.of_moment(), asked.moment, forces.moment, errors.moment)) {
+        return {};
+    }
+    const tables::CurveNumber number = curve_number(asked, forces);
+    return ResponseValue{number.value, curve_sigma(asked, forces, errors), number.at_least};
+}
+
 /// Why there is nothing to compare; empty: there are runs.
 std::string missing_words(const Design& design, const PlannedDesign& planned) {
     if (planned.predicted_of != design.what_is_asked()) {
@@ -126,6 +212,9 @@ std::optional<ResponseValue> computed_response(const Design& design, const std::
     for (const auto& condition : response.conditions) {
         at[condition.name] = condition.value;
     }
+    if (response.curve) {
+        return computed_curve(own, std::move(at), *response.curve);
+    }
     std::map<const DesignRun*, double> weights;
     if (response.slope_along.empty()) {
         if (!own.add(at, 1, weights)) {
@@ -140,16 +229,8 @@ std::optional<ResponseValue> computed_response(const Design& design, const std::
             }
         }
     }
-    ResponseValue sum;
-    for (const auto& [run, weight] : weights) {
-        const auto load = run->loads.find(response.quantity), sigma = run->sigmas.find(response.quantity);
-        if (load == run->loads.end()) {
-            return {};
-        }
-        sum.value += weight * load->second;
-        sum.sigma = std::hypot(sum.sigma, sigma == run->sigmas.end() ? 0.0 : weight * sigma->second);
-    }
-    return sum;
+    const auto sum = weighted_sums({weights}, response.quantity);
+    return sum ? std::optional(ResponseValue{sum->value.front(), std::sqrt(sum->covariance.front())}) : std::nullopt;
 }
 
 std::vector<ProofOfDesign> proofs(const Design& design) {
@@ -163,7 +244,8 @@ std::vector<ProofOfDesign> proofs(const Design& design) {
             const auto said = planned.predicted.find(response.name);
             if (proof.note.empty() && said != planned.predicted.end()) {
                 proof.responses.push_back({response.name, response_unit(response), said->second,
-                                           computed_response(design, planned.name, planned.fidelity, response)});
+                                           computed_response(design, planned.name, planned.fidelity, response),
+                                           response.curve.has_value()});
             }
         }
         all.push_back(std::move(proof));
@@ -223,13 +305,13 @@ std::string proof_text(const ProofOfDesign& proof) {
     }
     std::string text;
     for (const ProofOfResponse& one : proof.responses) {
-        text += head + one.name + " predicted " + core::told(one.predicted.value, one.predicted.sigma, one.unit, 4);
+        text += head + one.name + " predicted " + told_response(one.predicted, one.of_curves, one.unit);
         if (!one.computed) {
             text += ", its runs do not tell it\n";
             continue;
         }
         const double apart = one.difference_in_sigmas();
-        text += ", computed " + core::told(one.computed->value, one.computed->sigma, one.unit, 4) +
+        text += ", computed " + told_response(*one.computed, one.of_curves, one.unit) +
                 (std::isfinite(apart) ? " (" + core::format_number(std::abs(apart), 2) + " standard deviations apart)"
                                       : std::string()) +
                 "\n";
@@ -244,8 +326,12 @@ void to_json(nlohmann::json& json, const ProofOfDesign& proof) {
             {"note", proof.note},
             {"responses", nlohmann::json::array()}};
     for (const ProofOfResponse& one : proof.responses) {
-        const auto value = [](const ResponseValue& v) {
-            return nlohmann::json{{"value", v.value}, {"sigma", v.sigma}};
+        const auto value = [&](const ResponseValue& v) {
+            nlohmann::json told = {{"value", v.value}, {"sigma", v.sigma}};
+            if (one.of_curves) {
+                told["at_least"] = v.at_least;
+            }
+            return told;
         };
         json["responses"].push_back({{"name", one.name},
                                      {"unit", one.unit},

@@ -18,6 +18,7 @@ struct ProofOfResponse {
     /// Of this design's own runs alone, linear between them where they stand about the response's conditions; sigma is
     /// that of the runs. Nothing where they do not reach, or are not all there.
     std::optional<tables::ResponseValue> computed;
+    bool of_curves = false;  ///< of three gaps or pitches at least; below zero: there is none
     /// Their difference over the joint sigma; NaN where nothing is computed or no error is known.
     [[nodiscard]] double difference_in_sigmas() const;
 };

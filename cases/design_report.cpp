@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "cases/design.h"
+#include "cases/design_curves.h"
 #include "cases/design_figures.h"
 #include "cases/design_proof.h"
 #include "core/error.h"
@@ -53,7 +54,7 @@ void designs_table(core::HtmlPage& page, const tables::DesignSearch& search, con
             row.push_back(with_unit(c.at[v], problem.variables[v].unit));
         }
         const auto value = [&](const tables::ResponseValue& r, const tables::Response& response) {
-            return core::told(r.value, r.sigma, search.unit_of(response), 4);
+            return told_response(r, response);
         };
         for (std::size_t k = 0; k < c.objectives.size(); ++k) {
             row.push_back(value(c.objectives[k], problem.objectives[k].response));
@@ -146,9 +147,9 @@ void add_sensitivities(const Sources& from, const Surrogates& surrogates) {
     const auto& [design, renderer, page, progress] = from;
     page.section("Sensitivities");
     std::vector<Figure> figures;
-    for (const auto& [name, surrogate] : surrogates) {
-        figures.push_back(sensitivity_figure(surrogate, design.sensitivity(surrogate)));
-        figures.push_back(one_at_a_time_figure(surrogate, middle_of(surrogate.variables())));
+    for (const LearnedNumber& one : learned_numbers(design, surrogates)) {
+        figures.push_back(sensitivity_figure(one, design.sensitivity(one)));
+        figures.push_back(one_at_a_time_figure(one, middle_of(one.variables)));
     }
     pictures(page, renderer, figures);
 }
@@ -198,11 +199,11 @@ void add_proofs(const Sources& from) {
         }
         for (const ProofOfResponse& one : proof.responses) {
             const double apart = one.difference_in_sigmas();
-            rows.push_back({proof.design, proof.fidelity, proof.why, one.name,
-                            core::told(one.predicted.value, one.predicted.sigma, one.unit, 4),
-                            one.computed ? core::told(one.computed->value, one.computed->sigma, one.unit, 4)
-                                         : "its runs do not tell it",
-                            std::isfinite(apart) ? core::format_number(std::abs(apart), 2) : ""});
+            rows.push_back(
+                {proof.design, proof.fidelity, proof.why, one.name,
+                 told_response(one.predicted, one.of_curves, one.unit),
+                 one.computed ? told_response(*one.computed, one.of_curves, one.unit) : "its runs do not tell it",
+                 std::isfinite(apart) ? core::format_number(std::abs(apart), 2) : ""});
         }
     }
     page.table({"design", "mesh", "why", "of", "predicted", "computed", "standard deviations apart"}, rows,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct DesignSpec {
     JetAxis jet;                                ///< and of its nozzle's jet
     double kinematic_viscosity = 1e-6;          ///< of the water, m^2/s
     std::vector<std::string> quantities;
+    std::optional<double> net_weight;  ///< N, weight less buoyancy, of every design: ballast follows the volume
+    double virtual_mass = 0;           ///< kg, mass + added mass in heave; 0: not stated
     std::vector<tables::SearchVariable> variables;  ///< of the shape
     std::vector<geometry::Tie> ties;                ///< [[design.tie]]
     std::vector<FidelitySpec> fidelities;           ///< at least one
@@ -45,12 +48,14 @@ struct DesignSpec {
     [[nodiscard]] std::vector<tables::Response> responses() const;
 };
 
-/// The SI unit of a response: a slope's is that of the quantity over that of the condition.
+/// The SI unit of a response: a slope's is that of the quantity over that of the condition, a curve's its own.
 std::string response_unit(const tables::Response& response);
 
 /// Throws core::InputError with file and line: an unknown number of the shape, an empty range, an objective without a
 /// quantity that is computed, a fidelity twice.
 DesignSpec read_design(const core::TomlTable& design, const std::filesystem::path& study_folder);
+/// Its objectives and limits, into `spec` that has all else.
+void read_wishes(const core::TomlTable& design, DesignSpec& spec);
 /// What reading does not see: conditions that a response does not state, or states in vain. Throws core::InputError
 /// with the place in study.toml.
 void check_responses(const DesignSpec& spec);

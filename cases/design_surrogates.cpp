@@ -1,6 +1,7 @@
 // What a design search makes of its runs: surrogates, the search on them, what is known for it.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "cases/design.h"
 #include "core/counted.h"
@@ -119,15 +120,51 @@ std::optional<tables::TrustRegion> Design::trust_region(const tables::DesignSear
 
 geometry::BodyShape Design::shape_at(const std::vector<double>& at) const { return cases::shape_at(spec_, base_, at); }
 
-tables::SobolIndices Design::sensitivity(const tables::Surrogate& surrogate) const {
-    const auto& variables = surrogate.variables();
+LearnedNumber::LearnedNumber(const tables::Surrogate& surrogate)
+    : name(surrogate.quantity()),
+      unit(surrogate.unit()),
+      variables(surrogate.variables()),
+      value([surrogate](std::span<const double> x) { return surrogate.at(x).value; }),
+      with_error([surrogate](std::span<const double> x) {
+          const auto p = surrogate.at(x);
+          return tables::ResponseValue{p.value, p.sigma};
+      }) {}
+
+std::vector<LearnedNumber> learned_numbers(const Design& design,
+                                           const std::map<std::string, tables::Surrogate>& surrogates) {
+    std::vector<LearnedNumber> all;
+    for (const auto& [name, surrogate] : surrogates) {
+        all.emplace_back(surrogate);
+    }
+    std::shared_ptr<const tables::DesignSearch> search;
+    for (const tables::Response& response : design.spec().responses()) {
+        if (!response.curve || design.spec().objectives.empty()) {
+            continue;
+        }
+        if (!search) {
+            search = std::make_shared<const tables::DesignSearch>(design.search(surrogates));
+        }
+        LearnedNumber one;
+        one.name = response.name;
+        one.unit = response_unit(response);
+        one.of_curves = true;
+        one.variables = design.spec().variables;
+        one.value = [search, response](std::span<const double> x) { return search->evaluate_alone(response, x).value; };
+        one.with_error = [search, response](std::span<const double> x) { return search->evaluate(response, x); };
+        all.push_back(std::move(one));
+    }
+    return all;
+}
+
+tables::SobolIndices Design::sensitivity(const LearnedNumber& number) const {
+    const auto& variables = number.variables;
     return tables::sobol_indices(
         [&](std::span<const double> u) {
             std::vector<double> x;
             for (std::size_t v = 0; v < variables.size(); ++v) {
                 x.push_back(variables[v].unscaled(u[v]));
             }
-            return surrogate.at(x).value;
+            return number.value(x);
         },
         variables.size(), 1024, spec_.seed);
 }

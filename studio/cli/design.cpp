@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cases/design_curves.h"
 #include "cases/design_figures.h"
 #include "cases/design_proof.h"
 #include "cases/shape_loads.h"
@@ -75,17 +76,22 @@ json json_of(const tables::DesignSearch& search, const cases::DesignSpec& spec, 
     for (std::size_t v = 0; v < problem.variables.size(); ++v) {
         result["variables"][problem.variables[v].name] = c.at[v];
     }
-    const auto put = [](json& to, const std::string& name, const tables::ResponseValue& value,
+    const auto put = [](json& to, const tables::Response& response, const tables::ResponseValue& value,
                         const std::string& unit) {
+        const std::string& name = response.name;
+        const bool of_curves = response.curve.has_value();
         to[name] = {{"value", value.value}, {"sigma", value.sigma}, {"unit", unit}};
+        if (of_curves) {
+            to[name]["at_least"] = value.at_least;
+        }
     };
     for (std::size_t k = 0; k < c.objectives.size(); ++k) {
         const auto& response = problem.objectives[k].response;
-        put(result["objectives"], response.name, c.objectives[k], search.unit_of(response));
+        put(result["objectives"], response, c.objectives[k], search.unit_of(response));
     }
     for (std::size_t k = 0; k < c.limits.size(); ++k) {
         const auto& response = problem.limits[k].response;
-        put(result["limits"], response.name, c.limits[k], search.unit_of(response));
+        put(result["limits"], response, c.limits[k], search.unit_of(response));
     }
     return result;
 }
@@ -97,7 +103,7 @@ std::string text_of(const tables::DesignSearch& search, const tables::Candidate&
         text += "  " + problem.variables[v].name + " = " + shown(c.at[v], problem.variables[v].unit) + "\n";
     }
     const auto line = [&](const tables::Response& response, const tables::ResponseValue& value) {
-        text += "  " + response.name + ": " + core::told(value.value, value.sigma, search.unit_of(response), 4) + "\n";
+        text += "  " + response.name + ": " + cases::told_response(value, response) + "\n";
     };
     for (std::size_t k = 0; k < c.objectives.size(); ++k) {
         line(problem.objectives[k].response, c.objectives[k]);
@@ -263,7 +269,7 @@ std::string what_excludes(const tables::DesignSearch& search,
         if (alone[k]) {
             one["nearest"] = {{"value", alone[k]->nearest.value}, {"sigma", alone[k]->nearest.sigma}};
             text += std::string(alone[k]->met ? "can be met alone, with " : "cannot be met: at the nearest ") +
-                    core::told(alone[k]->nearest.value, alone[k]->nearest.sigma, unit, 4);
+                    cases::told_response(alone[k]->nearest, limits[k].response);
         } else {
             text += "no shape meets the limits that are known without a run";
         }
@@ -347,30 +353,33 @@ int sensitivity(Shell& shell, const Arguments& a) {
     const auto interval = [](const tables::SobolIndex& i) {
         return json{{"value", i.value}, {"lower", i.lower}, {"upper", i.upper}};
     };
-    for (const auto& [name, surrogate] : design.surrogates(shell.progress())) {
-        const tables::SobolIndices indices = design.sensitivity(surrogate);
+    for (const auto& one : cases::learned_numbers(design, design.surrogates(shell.progress()))) {
+        const tables::SobolIndices indices = design.sensitivity(one);
         json variables = json::array();
-        const std::vector<double> middle = cases::middle_of(surrogate.variables());
-        text += name + " (share of the variance: alone, with interactions)\n";
-        for (std::size_t v = 0; v < surrogate.variables().size(); ++v) {
+        const std::vector<double> middle = cases::middle_of(one.variables);
+        text += one.name + " (share of the variance: alone, with interactions)\n";
+        for (std::size_t v = 0; v < one.variables.size(); ++v) {
             json at = json::array(), value = json::array(), sigma = json::array();
-            for (const cases::OneAtATime& point : cases::along(surrogate, middle, v, 11)) {
+            for (const cases::OneAtATime& point : cases::along(one, middle, v, 11)) {
                 at.push_back(point.at);
                 value.push_back(point.value);
                 sigma.push_back(point.sigma);
             }
-            variables.push_back({{"name", surrogate.variables()[v].name},
+            variables.push_back({{"name", one.variables[v].name},
                                  {"first", interval(indices.first[v])},
                                  {"total", interval(indices.total[v])},
                                  {"held_at", middle[v]},
                                  {"one_at_a_time", {{"at", at}, {"value", value}, {"sigma", sigma}}}});
-            text += "  " + surrogate.variables()[v].name + ": " + core::format_number(indices.first[v].value, 2) +
-                    ", " + core::format_number(indices.total[v].value, 2) + " (" +
+            text += "  " + one.variables[v].name + ": " + core::format_number(indices.first[v].value, 2) + ", " +
+                    core::format_number(indices.total[v].value, 2) + " (" +
                     core::format_number(indices.total[v].lower, 2) + " to " +
                     core::format_number(indices.total[v].upper, 2) + ")\n";
         }
-        list.push_back(
-            {{"quantity", name}, {"mean", indices.mean}, {"variance", indices.variance}, {"variables", variables}});
+        list.push_back({{"quantity", one.name},
+                        {"unit", one.unit},
+                        {"mean", indices.mean},
+                        {"variance", indices.variance},
+                        {"variables", variables}});
     }
     if (shell.json) {
         shell.print_json({{"sensitivities", list}, {"notes", notes_json(design)}});
