@@ -31,7 +31,8 @@ std::string next_name(const std::vector<PlannedDesign>& plan) {
     }
 }
 
-const std::string said_before = "_predicted", its_error = "_predicted_sigma", said_of = "predicted_of";
+const std::string said_before = "_predicted", its_error = "_predicted_sigma", cut = "_predicted_at_least",
+                  said_of = "predicted_of";
 
 void read_predictions(const DesignSpec& spec, const core::Table& table, std::vector<PlannedDesign>& plan) {
     const auto of = text_or(table, said_of, "");
@@ -47,6 +48,8 @@ void read_predictions(const DesignSpec& spec, const core::Table& table, std::vec
         for (std::size_t i = 0; i < plan.size(); ++i) {
             if (std::isfinite(value[i]) && std::isfinite(sigma[i])) {
                 plan[i].predicted[name] = {value[i], sigma[i]};
+                plan[i].predicted[name].at_least =
+                    table.find(name + cut) != nullptr && table.numbers(name + cut)[i] > 0;
             }
         }
     }
@@ -104,7 +107,7 @@ void write_shape_file(const fs::path& file, const std::string& text) {
 void Design::read_plan(const fs::path& file) {
     std::vector<std::string> own = names_of(plan_table());
     for (const Response& response : spec_.responses()) {
-        own.insert(own.end(), {response.name + said_before, response.name + its_error});
+        own.insert(own.end(), {response.name + said_before, response.name + its_error, response.name + cut});
     }
     own.push_back(said_of);
     plan_ = planned_in(spec_, plan_file_.read(file, own));
@@ -279,14 +282,18 @@ void Design::add_predictions(core::Table& table) const {
         of.push_back(d.predicted_of);
     }
     for (const Response& response : spec_.responses()) {
-        std::vector<double> values, sigmas;
+        std::vector<double> values, sigmas, at_least;
         for (const PlannedDesign& d : plan_) {
             const auto said = d.predicted.find(response.name);
+            at_least.push_back(said == d.predicted.end() ? std::nan("") : said->second.at_least ? 1 : 0);
             values.push_back(said == d.predicted.end() ? std::nan("") : said->second.value);
             sigmas.push_back(said == d.predicted.end() ? std::nan("") : said->second.sigma);
         }
         table.add_numbers(response.name + said_before, response_unit(response), values);
         table.add_numbers(response.name + its_error, response_unit(response), sigmas);
+        if (response.curve) {
+            table.add_numbers(response.name + cut, "1", at_least);
+        }
     }
     table.add_text(said_of, of);
 }

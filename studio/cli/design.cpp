@@ -268,6 +268,9 @@ std::string what_excludes(const tables::DesignSearch& search,
         text += "  " + limits[k].response.name + ": ";
         if (alone[k]) {
             one["nearest"] = {{"value", alone[k]->nearest.value}, {"sigma", alone[k]->nearest.sigma}};
+            if (limits[k].response.curve) {
+                one["nearest"]["at_least"] = alone[k]->nearest.at_least;
+            }
             text += std::string(alone[k]->met ? "can be met alone, with " : "cannot be met: at the nearest ") +
                     cases::told_response(alone[k]->nearest, limits[k].response);
         } else {

@@ -142,6 +142,9 @@ TEST_F(DesignCurves, AreProvedByTheRunsOfTheDesign) {
     design = open();
     EXPECT_NE(design.plan_table().find("kick_predicted"), nullptr);
     EXPECT_EQ(design.plan_table().find("kick_predicted")->unit, "m/s");
+    ASSERT_TRUE(best->limits[0].at_least);  // a degree is what was computed
+    EXPECT_TRUE(design.plan().back().predicted.at("window").at_least);
+    EXPECT_FALSE(design.plan().back().predicted.at("kick").at_least);
     compute_curved(design);
     design = open();
     const auto all = proofs(design);
