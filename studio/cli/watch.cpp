@@ -3,15 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <future>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/counted.h"
+#include "core/no_limit.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "core/units.h"
+#include "studio/cli/cause_search.h"
 #include "studio/cli/commands.h"
 #include "studio/cli/option_value.h"
 #include "studio/cli/shell.h"
@@ -32,74 +34,6 @@ struct WatchArguments {
     double per_day = 1;
     bool follow = false;
     bool no_cause = false;
-};
-
-/// Looks for what changed, in a thread of its own where the log does not wait.
-class CauseSearch {
-public:
-    /// What a model lacks that was watched.
-    struct Question {
-        dynamics::Model model;
-        dynamics::Measurements data;
-    };
-    struct Result {
-        discovery::Discovery found;
-        std::string error;        ///< why nothing can be told
-        bool same_story = false;  ///< one change since the earlier alarm explains all of it
-    };
-    ~CauseSearch() {
-        progress_.cancel();
-        if (result_.valid()) {
-            result_.wait();
-        }
-    }
-    void begin(Question now, std::optional<Question> earlier) {
-        result_ = std::async(std::launch::async, [this, now = std::move(now), earlier = std::move(earlier)] {
-            return search(now, earlier, progress_);
-        });
-    }
-    [[nodiscard]] bool running() const { return result_.valid(); }
-    [[nodiscard]] bool ready() const {
-        return running() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    }
-    /// Waits for it; Ctrl-C ends both. Throws core::Cancelled.
-    Result wait(core::Progress& outer) {
-        while (result_.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
-            if (outer.cancelled()) {
-                progress_.cancel();
-            }
-        }
-        return result_.get();
-    }
-    /// `earlier`: since the first alarm of what may be one change, and the model then. One change that leaves noise is
-    /// the simpler story than a second one, and its numbers are surer; else what changed of late is asked for.
-    static Result search(const Question& now, const std::optional<Question>& earlier, core::Progress& progress) {
-        if (earlier) {
-            Result result = search(*earlier, progress);
-            if (result.error.empty() && result.found.verdict == "effect" && result.found.rest.is_noise) {
-                result.same_story = true;
-                return result;
-            }
-        }
-        return search(now, progress);
-    }
-
-private:
-    static Result search(const Question& question, core::Progress& progress) {
-        discovery::DiscoverOptions options;
-        options.consequence = false;
-        options.figures = false;
-        try {
-            return {discovery::discover(question.model, question.data, options, progress), {}, false};
-        } catch (const core::Cancelled&) {
-            throw;
-        } catch (const core::Error& error) {
-            return {{}, error.message(), false};
-        }
-    }
-
-    core::Progress progress_;
-    std::future<Result> result_;
 };
 
 /// The watch, what it says, and what happens after an alarm.
@@ -145,6 +79,7 @@ public:
 
     /// The log has ended, or somebody ended the watch. True if there was an alarm.
     bool end(bool cancelled, const core::Problems& problems) {
+        look_again_ = core::no_limit;  // nothing more will be read
         if (!cancelled) {
             if (alarm_) {
                 look_for_cause();
@@ -194,11 +129,33 @@ public:
     }
 
 private:
-    static std::string seconds(double time) { return core::format_number(time, 8) + " s"; }
+    /// Seconds since 1970 to a hundredth as well: 1764337136.97 s.
+    static std::string seconds(double time) {
+        constexpr double large = 1e6;
+        return core::format_number(std::abs(time) < large ? time : std::round(100 * time) / 100,
+                                   std::abs(time) < large ? 8 : 12) +
+               " s";
+    }
+
+    /// Own time goes on where the clock of the log is set: what was said of times before does not hold after it.
+    void follow_clock(double time) {
+        const double step = time - last_;
+        own_time_ += begun_ ? std::clamp(step, 0.0, most_of_a_silence) : 0;
+        if (begun_ && (step < -least_set_back || step > longest_pause)) {
+            if (!search_) {
+                story_.reset();
+            }
+            if (alarm_) {
+                alarm_->since = time;
+            }
+        }
+        begun_ = true;
+        last_ = time;
+    }
 
     void gap(double time, double value) {
         const auto alarm = watch_->gap(time, value);
-        last_ = time;
+        follow_clock(time);
         if (!told_ && watch_->learned()) {
             told_ = true;
             say_learned();
@@ -206,9 +163,11 @@ private:
         if (search_ && search_->ready()) {
             say_cause(search_->wait(shell_.progress()));
         }
-        if (alarm && !alarm_ && !search_ && !(time < silent_until_)) {
+        if (alarm && !alarm_ && !search_ && !(own_time_ < silent_until_)) {
             ++alarms_;
             alarm_ = alarm;
+            search_at_ = own_time_ + after_;
+            look_again_ = 2 * after_;
             say({{"event", "alarm"},
                  {"time", alarm->time},
                  {"since", alarm->since},
@@ -217,7 +176,7 @@ private:
                 seconds(alarm->time) + ": the vehicle is no longer the model, since about " + seconds(alarm->since) +
                     "; what shows is " + alarm->shows);
         }
-        if (alarm_ && time >= alarm_->time + after_) {
+        if (alarm_ && own_time_ >= search_at_) {
             look_for_cause();
         }
     }
@@ -246,6 +205,7 @@ private:
 
     void look_for_cause() {
         alarmed_since_ = alarm_->since;
+        looked_for_ = alarm_;
         alarm_.reset();
         const auto ask = [&](const dynamics::Model& of, double since) {
             CauseSearch::Question question{of, watch_->since(since)};
@@ -274,12 +234,10 @@ private:
     void say_cause(const CauseSearch::Result& result) {
         search_.reset();
         const discovery::Discovery& found = result.found;
-        if (!story_) {
-            story_ = {model_, alarmed_since_};
-        }
         const double since = result.same_story ? story_->since : alarmed_since_;
         nlohmann::json event = {{"event", "cause"}, {"time", last_}, {"since", since}};
         if (!result.error.empty()) {
+            begin_story();
             event["verdict"] = "unknown";
             event["sentence"] = result.error;
             say(event, seconds(last_) + ": what changed cannot be told: " + result.error);
@@ -300,9 +258,21 @@ private:
                         discovery::value_text(parameter);
             }
         }
+        // what changed may be too little to be named yet: the same alarm, looked into with twice as much
+        const bool look_again =
+            !other && (found.structure || found.verdict == "unknown") && look_again_ <= 0.5 * options_.remember;
+        event["looks_again_in"] = look_again ? nlohmann::json(look_again_) : nlohmann::json();
         text += std::string("\n  goes on with the model as ") + (other ? "found" : "before") +
-                ", and with the noise as it was before the change";
+                ", and with the noise as it was before the change" +
+                (look_again ? "; looks again in " + core::format_number(look_again_, 4) + " s" : "");
         say(event, text);
+        if (!other && look_again) {
+            alarm_ = looked_for_;
+            search_at_ = own_time_ + look_again_;
+            look_again_ *= 2;
+            return;
+        }
+        begin_story();
         if (!other) {
             go_on_as_before();
             return;
@@ -313,13 +283,20 @@ private:
         const dynamics::RecordReading records = model_.records;
         model_ = found.model;
         model_.records = records;
-        watch_->go_on_with(model_, std::max(last_ - since, after_));
+        watch_->go_on_with(model_, std::clamp(last_ - since, after_, std::max(after_, own_time_)));
+    }
+
+    /// Of a change that may be one with what changes later.
+    void begin_story() {
+        if (!story_) {
+            story_ = {model_, alarmed_since_};
+        }
     }
 
     /// With the same model: the same change is not said again at once.
     void go_on_as_before() {
         watch_->reset();
-        silent_until_ = last_ + after_;
+        silent_until_ = own_time_ + after_;
     }
 
     /// A line at once; for a caller all of them at the end.
@@ -342,8 +319,13 @@ private:
     dynamics::Model model_;
     dynamics::MeasurementSetup setup_;
     discovery::WatchOptions options_;
-    double after_ = 60, last_ = 0, alarmed_since_ = 0, silent_until_ = -1e300;
-    bool pitch_too_ = false;  ///< the log has it
+    static constexpr double longest_pause = 30 * 86400.0, least_set_back = 0.5;  ///< s; beyond: the clock was set
+    static constexpr double most_of_a_silence = 1;                               ///< s that count of one
+    double after_ = 60, last_ = 0, alarmed_since_ = 0;
+    bool begun_ = false;
+    double own_time_ = 0, silent_until_ = -1e300, search_at_ = 0;  ///< s, of a clock that is never set
+    double look_again_ = 0;                                        ///< s after this search, where nothing is named
+    bool pitch_too_ = false;                                       ///< the log has it
     bool live_ = false;
     std::unique_ptr<discovery::Watch> watch_;
     /// The change that is being explained: the model before it, and since when.
@@ -352,7 +334,7 @@ private:
         double since = 0;
     };
     std::optional<Story> story_;
-    std::optional<discovery::WatchAlarm> alarm_;
+    std::optional<discovery::WatchAlarm> alarm_, looked_for_;
     std::unique_ptr<CauseSearch> search_;
     nlohmann::json events_ = nlohmann::json::array();
     std::size_t alarms_ = 0;

@@ -96,6 +96,30 @@ TEST(WatchCommand, AForceThatGrowsIsTiedWithADriftAndFoundAnewAsItGoesOn) {
         << "what comes after is seen as well as before: " << run.output;
 }
 
+/// A free body whose sensor drifts moves as under a force: one alarm, and silence with the model as found. (There was
+/// another alarm about every minute, told at "1.7643371e+09 s".)
+TEST(WatchCommand, ADriftOfAFreeBodyIsSaidOnceByAClockThatCountsFrom1970) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml",
+                     "[vehicle]\nmass = 4\nnet_weight = 0\n[drag.heave]\nlinear = 0.5\nquadratic = 0\n");
+    WatchedRig rig(23);
+    rig.spring = 0;
+    std::string csv = "time [s], gap [m], input_force [N]\n";
+    constexpr double change = 200, set_back = 600;
+    while (rig.time < 900) {
+        rig.bias = rig.time > change ? 1e-3 * (rig.time - change) : 0;
+        rig.advance();
+        csv += core::format_number(1764337000 + rig.time - (rig.time > set_back ? 100 : 0), 13) + ", " +
+               core::format_number(rig.reading, 9) + ", " + core::format_number(rig.input, 9) + "\n";
+    }
+    core::write_file(folder.path() / "run.csv", csv);
+    const ProgramRun run = run_underbody({"watch", "model.toml", "run.csv"}, folder.path());
+    EXPECT_EQ(run.exit_code, 4) << run.errors;
+    EXPECT_THAT(run.output, HasSubstr("\n17643372"));
+    EXPECT_THAT(run.output, HasSubstr("; 1 alarm"));
+    EXPECT_THAT(run.output, HasSubstr("goes on with the model as found"));
+}
+
 TEST(WatchCommand, IsSilentWhileNothingChanges) {
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "model.toml", rig_model);

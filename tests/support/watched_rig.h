@@ -21,6 +21,7 @@ struct WatchedRig {
     double lost = 0;       ///< share of readings that are lost, half of them one by one, half in silences of up to 20 s
     double lost_rows = 0;  ///< share of rows that are lost one by one, with the input that is logged in them
     double text = 0;       ///< share of fields that hold no number, of the reading and of the input
+    double spring = stiffness;  ///< N/m; 0: a free body
     // What changes:
     double force = 0;         ///< N, constant
     double bias = 0;          ///< m, of a reading
@@ -50,7 +51,7 @@ struct WatchedRig {
             const double dt = step / parts;
             const auto slope = [&](double h, double w) {
                 const double guide = friction > 0 ? friction * std::tanh(w / 5e-4) : 0;
-                return (gain * input + kick + force - guide - stiffness * (h - middle) - (damping + more_damping) * w) /
+                return (gain * input + kick + force - guide - spring * (h - middle) - (damping + more_damping) * w) /
                        mass;
             };
             const double a1 = slope(gap, velocity), a2 = slope(gap + 0.5 * dt * velocity, velocity + 0.5 * dt * a1);

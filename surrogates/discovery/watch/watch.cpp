@@ -53,21 +53,41 @@ struct Watch::Parts {
                 held[channel] = value;
             }
         }
-        plant = plant_of_conditions();
+        follow_conditions();
     }
 
-    std::shared_ptr<const dynamics::HeavePlant> plant_of_conditions() {
+    /// The plants of the model as it is, and with one of its numbers higher by the error that it states.
+    struct Plants {
+        WatchPlant plant;
+        std::vector<WatchPlant> doubted;
+    };
+
+    [[nodiscard]] Plants make_plants() const {
+        Plants out{std::make_shared<const dynamics::HeavePlant>(model, held), {}};
+        for (std::size_t e = model.effects.size(); e-- > 0;) {  // what was found last first
+            for (std::size_t i = 0; i < model.effects[e].sigmas.size() && out.doubted.size() < most_doubts; ++i) {
+                if (model.effects[e].sigmas[i] > 0) {
+                    dynamics::Model other = model;
+                    other.effects[e].values[i] += other.effects[e].sigmas[i];
+                    out.doubted.push_back(std::make_shared<const dynamics::HeavePlant>(other, held));
+                }
+            }
+        }
+        return out;
+    }
+
+    /// `plant` and `doubted` under the conditions that hold.
+    void follow_conditions() {
         std::vector<double> key(held.value.begin(), held.value.end());
         std::replace_if(
             key.begin(), key.end(), [](double v) { return std::isnan(v); }, -core::no_limit);
         if (plants.size() > most_plants) {
             plants.clear();
         }
-        auto& found = plants[key];
-        if (!found) {
-            found = std::make_shared<const dynamics::HeavePlant>(model, held);
-        }
-        return found;
+        const auto known = plants.find(key);
+        const Plants& found = known != plants.end() ? known->second : plants.emplace(key, make_plants()).first->second;
+        plant = found.plant;
+        doubted = found.doubted;
     }
 
     // ---- from readings to steps
@@ -204,6 +224,7 @@ struct Watch::Parts {
     void restart_filter() {
         residuals = std::make_unique<WatchResiduals>(plant, noise->noise);
         residuals->set_colours(noise->colours);
+        residuals->set_doubted(doubted);
     }
 
     /// Readings up to `next_begin`, averaged.
@@ -358,8 +379,9 @@ struct Watch::Parts {
     dynamics::Model model;
     WatchOptions options;
     dynamics::Conditions held;
-    std::shared_ptr<const dynamics::HeavePlant> plant;
-    std::map<std::vector<double>, std::shared_ptr<const dynamics::HeavePlant>> plants;
+    WatchPlant plant;
+    std::vector<WatchPlant> doubted;
+    std::map<std::vector<double>, Plants> plants;
     std::optional<WatchNoise> noise;
     std::unique_ptr<WatchResiduals> residuals;
     std::unique_ptr<WatchScores> scores;
@@ -401,9 +423,10 @@ void Watch::condition(const std::string& quantity, double value) {
     dynamics::Channel channel{};
     if (dynamics::find_channel(quantity, channel) && parts_->held[channel] != rounded) {
         parts_->held[channel] = rounded;
-        parts_->plant = parts_->plant_of_conditions();
+        parts_->follow_conditions();
         if (parts_->residuals) {
             parts_->residuals->set_plant(parts_->plant);
+            parts_->residuals->set_doubted(parts_->doubted);
         }
     }
 }
@@ -441,7 +464,7 @@ void Watch::go_on_with(const dynamics::Model& model, double fitted_over) {
     p.model = model;
     p.options.fitted_over = fitted_over;
     p.plants.clear();
-    p.plant = p.plant_of_conditions();
+    p.follow_conditions();
     if (p.scores) {
         p.restart_filter();
         p.scores->go_on(fitted_over);

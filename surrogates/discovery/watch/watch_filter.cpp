@@ -28,6 +28,7 @@ void WatchFilter::restart(double time, double gap) {
     spread_.setZero();
     spread_.diagonal() << unknown_gap * unknown_gap, unknown_velocity * unknown_velocity, noise_.slow * noise_.slow;
     deviations_.fill(Eigen::Vector3d::Zero());
+    doubt_deviations_.fill(Eigen::Vector3d::Zero());
     kick_.setZero();
     memory_ = {};
 }
@@ -39,7 +40,15 @@ void WatchFilter::advance_part(double rest, double input) {
         double& w = state_[1];
         dynamics::HeaveSlopes slopes;
         const double* memory = plant_->terms.history != 0 ? memory_.data() : nullptr;
-        const double a = plant_->acceleration(h, w, {time_, input, nullptr, nullptr, spread_(1, 1)}, memory, slopes);
+        const dynamics::HeaveMoment now{time_, input, nullptr, nullptr, spread_(1, 1)};
+        const double declared = plant_->acceleration(h, w, now, memory, slopes);
+        std::array<double, most_doubts> push_of_doubt{};
+        double a = declared;
+        for (std::size_t k = 0; k < doubted_.size(); ++k) {
+            dynamics::HeaveSlopes unused;
+            push_of_doubt[k] = doubted_[k]->acceleration(h, w, now, memory, unused) - declared;
+            a += moved_[k] * push_of_doubt[k];
+        }
         const double stiffness = std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
         double dt = std::min(rest, longest_step);
         if (stiffness * dt > series_holds) {
@@ -57,6 +66,10 @@ void WatchFilter::advance_part(double rest, double input) {
         for (std::size_t j = 0; j < watch_directions; ++j) {
             const double push = along[j] / slopes.mass;
             deviations_[j] = f * deviations_[j] + Eigen::Vector3d(q * push, dt * push, 0);
+        }
+        for (std::size_t k = 0; k < doubted_.size(); ++k) {
+            doubt_deviations_[k] =
+                f * doubt_deviations_[k] + Eigen::Vector3d(q * push_of_doubt[k], dt * push_of_doubt[k], 0);
         }
         kick_ = f * kick_;
         state_[2] *= f(2, 2);
@@ -79,6 +92,14 @@ void WatchFilter::advance_part(double rest, double input) {
         middle_ += (h - middle_) * std::min(1.0, dt / middle_time);
         time_ += dt;
         rest -= dt;
+    }
+}
+
+void WatchFilter::move_numbers(const Eigen::Matrix<double, most_doubts, 1>& by) {
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+        const double change = by[static_cast<Eigen::Index>(k)];
+        moved_[k] += change;
+        state_ += change * doubt_deviations_[k];
     }
 }
 
@@ -114,14 +135,31 @@ WatchInnovation WatchFilter::innovation(double residual, const Eigen::Vector3d& 
     for (std::size_t j = 0; j < watch_directions; ++j) {
         out.slope[j] = row.dot(deviations_[j]) / out.sigma;
     }
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+        out.doubt[k] = row.dot(doubt_deviations_[k]) / out.sigma;
+    }
     out.kick = row.dot(kick_) / out.sigma;
     return out;
 }
 
 WatchInnovation WatchFilter::gap_innovation(const WatchStep& step) const {
-    const double sigma = noise_.gap * step.gap_share, delay = plant_->terms.sensor_delay;
+    const double sigma = noise_.gap * step.gap_share, declared = plant_->terms.sensor_offset(step.time);
+    std::array<double, most_doubts> shown_by_doubt{};
+    double offset = declared, delay = plant_->terms.sensor_delay;
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+        const dynamics::HeaveTerms& terms = doubted_[k]->terms;
+        const double higher = terms.sensor_offset(step.time) - declared;
+        const double later = terms.sensor_delay - plant_->terms.sensor_delay;
+        shown_by_doubt[k] = higher - later * state_[1];
+        offset += moved_[k] * higher;
+        delay += moved_[k] * later;
+    }
     const Eigen::Vector3d row(1, -delay, 1);
-    return innovation(step.gap - plant_->terms.sensor_offset(step.time) - row.dot(state_), row, sigma * sigma);
+    WatchInnovation out = innovation(step.gap - offset - row.dot(state_), row, sigma * sigma);
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+        out.doubt[k] += shown_by_doubt[k] / out.sigma;
+    }
+    return out;
 }
 
 WatchInnovation WatchFilter::velocity_innovation(const WatchStep& step) const {
@@ -132,6 +170,9 @@ WatchInnovation WatchFilter::velocity_innovation(const WatchStep& step) const {
 void WatchFilter::absorb(const WatchInnovation& innovation, double normal) {
     for (std::size_t j = 0; j < watch_directions; ++j) {
         deviations_[j] -= innovation.gain * innovation.slope[j];
+    }
+    for (std::size_t k = 0; k < doubted_.size(); ++k) {
+        doubt_deviations_[k] -= innovation.gain * innovation.doubt[k];
     }
     kick_ -= innovation.gain * innovation.kick;
     state_ += innovation.gain * normal;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/dynamics/plant/heave.h"
@@ -14,6 +15,10 @@ namespace underbody::discovery {
 /// Directions in which a vehicle may leave its model: forces that are constant, grow with the velocity, follow the
 /// direction of motion, the gap, the input; in this order.
 inline constexpr std::size_t watch_directions = 5;
+
+/// Numbers of the model that are known to an error: so many are followed.
+inline constexpr std::size_t most_doubts = 6;
+using WatchPlant = std::shared_ptr<const dynamics::HeavePlant>;
 
 /// Readings of one step (record_step or more), averaged.
 struct WatchStep {
@@ -35,6 +40,8 @@ struct WatchInnovation {
     double sigma = 1;   ///< that deviation, in the reading's unit
     /// What one newton (N s/m, N/m ...) of each direction adds to `normal`.
     std::array<double, watch_directions> slope{};
+    /// What one standard deviation of each doubted number adds to it.
+    std::array<double, most_doubts> doubt{};
     double kick = 0;        ///< what the input that nobody logged adds to it, one deviation of it
     double variance = 0;    ///< share of the reading's own noise in sigma^2
     Eigen::Vector3d gain;   ///< of the filter, per unit of `normal`
@@ -47,6 +54,11 @@ public:
     WatchFilter(std::shared_ptr<const dynamics::HeavePlant> plant, HeaveNoise noise);
     /// Other conditions from now on.
     void set_plant(std::shared_ptr<const dynamics::HeavePlant> plant) { plant_ = std::move(plant); }
+    /// Plants in which one number is higher by its standard deviation; most_doubts at most.
+    void set_doubted(std::vector<WatchPlant> plants) { doubted_ = std::move(plants); }
+    [[nodiscard]] std::size_t doubts() const { return doubted_.size(); }
+    /// These numbers are higher than they were thought to be, each by so many of its deviations.
+    void move_numbers(const Eigen::Matrix<double, most_doubts, 1>& by);
     /// The state is not known any more: at the begin and after a silence.
     void restart(double time, double gap);
     /// To the step's time.
@@ -65,7 +77,10 @@ public:
 private:
     void advance_part(double dt, double input);
     [[nodiscard]] WatchInnovation innovation(double residual, const Eigen::Vector3d& row, double variance) const;
-    std::shared_ptr<const dynamics::HeavePlant> plant_;
+    WatchPlant plant_;
+    std::vector<WatchPlant> doubted_;
+    std::array<Eigen::Vector3d, most_doubts> doubt_deviations_;  ///< what one deviation of a number does to the state
+    std::array<double, most_doubts> moved_{};                    ///< deviations, of each number
     HeaveNoise noise_;
     double time_ = 0, middle_ = 0;
     Eigen::Vector3d state_ = Eigen::Vector3d::Zero();

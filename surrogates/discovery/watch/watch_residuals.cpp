@@ -23,9 +23,61 @@ constexpr double silence = 1;            ///< s without a reading: the state is 
 constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
 constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
 constexpr double limit = 3;              ///< of what one reading may say
+constexpr double least_left = 0.02;      ///< one less the sum of a colour's coefficients
 constexpr double uneven = 1.5;           ///< of the usual step: the colour's past is not known then
 
 }  // namespace
+
+void WatchDoubts::begin(std::size_t count) {
+    response_.setZero();
+    spread_.setZero();
+    spread_.diagonal().head(static_cast<Eigen::Index>(count)).setOnes();
+}
+
+double WatchDoubts::widened(const WatchInnovation& innovation, double white) const {
+    const Eigen::Map<const Numbers> slope(innovation.doubt.data());
+    return std::sqrt(1 + slope.dot(spread_ * slope) / white);
+}
+
+WatchInnovation WatchDoubts::with_errors(const WatchInnovation& innovation, double white) const {
+    const Eigen::Map<const Numbers> slope(innovation.doubt.data());
+    const double wider = widened(innovation, white);
+    WatchInnovation out = innovation;
+    out.normal = innovation.normal / wider;
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        out.slope[j] = (innovation.slope[j] - slope.dot(response_.col(static_cast<Eigen::Index>(j)))) / wider;
+    }
+    out.kick = innovation.kick / wider;
+    return out;
+}
+
+WatchDoubts::Numbers WatchDoubts::learn(const WatchInnovation& innovation, double white) {
+    const Eigen::Map<const Numbers> slope(innovation.doubt.data());
+    const Numbers seen = spread_ * slope, gain = seen / (white + slope.dot(seen));
+    for (std::size_t j = 0; j < watch_directions; ++j) {
+        const auto column = static_cast<Eigen::Index>(j);
+        response_.col(column) += gain * (innovation.slope[j] - slope.dot(response_.col(column)));
+    }
+    spread_ -= gain * seen.transpose();
+    return gain * innovation.normal;
+}
+
+void WatchResiduals::set_doubted(std::vector<WatchPlant> plants) {
+    if (plants.size() != filter_.doubts()) {
+        doubts_.begin(plants.size());
+    }
+    filter_.set_doubted(std::move(plants));
+}
+
+double WatchResiduals::white(std::size_t sensor) const {
+    const WatchColour& colour = sensors_[sensor].colour;
+    double left = 1;
+    for (const double phi : colour.phi) {
+        left -= phi;
+    }
+    const double scale = colour.scale / std::max(left, least_left);
+    return scale * scale;
+}
 
 void WatchResiduals::set_colours(const std::array<WatchColour, 2>& colours) {
     for (std::size_t s = 0; s < 2; ++s) {
@@ -33,8 +85,10 @@ void WatchResiduals::set_colours(const std::array<WatchColour, 2>& colours) {
     }
 }
 
-std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const WatchInnovation& innovation) {
+std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const WatchInnovation& of_filter) {
     Sensor& sensor = sensors_[index];
+    const double wider = doubts_.widened(of_filter, white(index));
+    const WatchInnovation innovation = doubts_.with_errors(of_filter, white(index));
     WatchColour& colour = sensor.colour;
     WatchInnovation expected;
     for (std::size_t k = 0; k < WatchColour::order; ++k) {
@@ -60,7 +114,11 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
         used.kick = expected.kick;
     } else {
         sensor.rejected = std::abs(value) > gate ? sensor.rejected : 0;
-        filter_.absorb(innovation, settling_ + first_steps > settle_steps ? innovation.normal : used.normal);
+        const bool whole = settling_ + first_steps > settle_steps;
+        WatchInnovation taken = of_filter;
+        taken.normal += whole ? 0 : wider * (used.normal - innovation.normal);
+        filter_.absorb(of_filter, taken.normal);
+        filter_.move_numbers(doubts_.learn(taken, white(index)));
     }
     std::rotate(sensor.past.begin(), sensor.past.end() - 1, sensor.past.end());
     sensor.past[0] = used;
@@ -97,6 +155,7 @@ void WatchResiduals::take_kick() {
 
 void WatchResiduals::restart(const WatchStep& step) {
     filter_.restart(step.time, step.gap);
+    doubts_.restart();
     settling_ = settle_steps;
     kick_ = {};
     unjudged_ = 0;
@@ -109,7 +168,7 @@ void WatchResiduals::restart(const WatchStep& step) {
 /// Looks whether the state is another than was thought, before the reading is judged.
 WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
     const WatchInnovation innovation = filter_.gap_innovation(step);
-    const double size = std::abs(innovation.normal) / sensors_[0].colour.scale;
+    const double size = std::abs(doubts_.with_errors(innovation, white(0)).normal) / sensors_[0].colour.scale;
     const bool just_begun = settling_ + first_steps > settle_steps;
     if (size > gate && restarts_ < most_restarts &&
         (just_begun || (settling_ + unjudged_ > 0 && sensors_[0].rejected >= most_wild))) {

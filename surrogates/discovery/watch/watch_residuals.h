@@ -36,11 +36,38 @@ struct WatchColour {
     [[nodiscard]] bool white() const { return phi == std::array<double, order>{}; }
 };
 
+/// How sure numbers of the model are that are known to an error, each in its standard deviation, and what readings say
+/// of them: as if they were states of the filter that do not change (Friedland 1969).
+class WatchDoubts {
+public:
+    using Numbers = Eigen::Matrix<double, most_doubts, 1>;
+    /// Of so many numbers nothing more is known than their error.
+    void begin(std::size_t count);
+    /// The filter begins anew, the numbers are as sure as they were.
+    void restart() { response_.setZero(); }
+    /// An innovation over the deviation that it has with the errors of the numbers. `white`: variance of independent
+    /// innovations that say as much of a mean as these do.
+    [[nodiscard]] WatchInnovation with_errors(const WatchInnovation& innovation, double white) const;
+    /// That deviation over the one without.
+    [[nodiscard]] double widened(const WatchInnovation& innovation, double white) const;
+    /// By how much the numbers are higher after an innovation of the filter.
+    Numbers learn(const WatchInnovation& innovation, double white);
+
+private:
+    Eigen::Matrix<double, most_doubts, most_doubts> spread_ = Eigen::Matrix<double, most_doubts, most_doubts>::Zero();
+    /// What one unit of each direction has added to the numbers.
+    Eigen::Matrix<double, most_doubts, watch_directions> response_ =
+        Eigen::Matrix<double, most_doubts, watch_directions>::Zero();
+};
+
 /// Filter, whitening and the gate for wild readings. Sensors: [0] the gap, [1] the heave velocity.
 class WatchResiduals {
 public:
     WatchResiduals(std::shared_ptr<const dynamics::HeavePlant> plant, HeaveNoise noise) : filter_(plant, noise) {}
     void set_plant(std::shared_ptr<const dynamics::HeavePlant> plant) { filter_.set_plant(std::move(plant)); }
+    /// Plants in which one number is higher by its standard deviation. As many as before: the same numbers under other
+    /// conditions.
+    void set_doubted(std::vector<WatchPlant> plants);
     void set_colours(const std::array<WatchColour, 2>& colours);
     /// A silence of more than a second makes the state unknown; a while after it nothing is judged.
     std::array<std::optional<WatchResidual>, 2> take(const WatchStep& step);
@@ -62,7 +89,10 @@ private:
     void restart(const WatchStep& step);
     [[nodiscard]] WatchInnovation gap_innovation(const WatchStep& step);
     std::optional<WatchResidual> judge(std::size_t sensor, const WatchInnovation& innovation);
+    /// Variance of independent innovations that say as much of a mean as this sensor's.
+    [[nodiscard]] double white(std::size_t sensor) const;
     WatchFilter filter_;
+    WatchDoubts doubts_;
     std::array<Sensor, 2> sensors_;
     std::optional<double> time_;
     double usual_step_ = 0;

@@ -1,8 +1,9 @@
 // bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]]: alarms of the watch over simulated hours in which the rig is
 // its model, with the interval of their rate, for each kind of noise. Days run side by side, each with its own seed
 // (day 1 of the first kind: 1000; SEED is added to all). bench_watch delays [SEEDS]: how long changes that make the
-// model's 2 s prediction wrong by 1, 2 and 5 noises take to be seen. bench_watch speed: readings a second at 1 kHz, and
-// memory.
+// model's 2 s prediction wrong by 1, 2 and 5 noises take to be seen. bench_watch found [RIGS [SEED]]: alarms in the
+// hour after a constant force was found to its error, of a body on its spring and of a free one. bench_watch speed:
+// readings a second at 1 kHz, and memory.
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
@@ -13,12 +14,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <numeric>
 #include <vector>
 
 #include "tests/support/watched_rig.h"
 
 namespace {
 
+namespace dynamics = underbody::dynamics;
 using underbody::discovery::Watch;
 using underbody::test::WatchedRig;
 
@@ -163,6 +166,55 @@ void measure_delays(std::uint64_t seeds) {
     }
 }
 
+/// Alarms in an hour with a number that is off by its error, which the model states or not.
+int alarms_after_found(WatchedRig rig, double off, bool stated) {
+    constexpr double change = 300, force = 1e-3, sigma = 6e-5;  // s, N
+    const dynamics::Model declared =
+        rig.spring > 0
+            ? WatchedRig::model()
+            : dynamics::read_model_text(
+                  "[vehicle]\nmass = 4\nnet_weight = 0\n[drag.heave]\nlinear = 0.5\nquadratic = 0\n", "free.toml", ".");
+    Watch watch(declared, {});
+    int alarms = 0;
+    bool found = false;
+    while (rig.time < change + 60 + 3600) {
+        rig.force = rig.time > change ? force : 0;
+        const bool alarm = rig.show(watch).has_value();
+        if (!found && rig.time > change + 60) {
+            found = true;
+            dynamics::EffectUse use = dynamics::make_use("constant_force", {{"force", force + off * sigma}});
+            use.sigmas = {stated ? sigma : 0};
+            watch.go_on_with(declared.with_effect(use), 60);
+        } else if (found && alarm) {
+            ++alarms;
+            watch.reset();
+        }
+    }
+    return alarms;
+}
+
+void count_after_found(std::size_t rigs, std::size_t seed) {
+    for (const double spring : {WatchedRig::stiffness, 0.0}) {
+        for (const double colour : {0.0, 0.9}) {
+            for (const bool stated : {false, true}) {
+                std::vector<int> alarms(rigs, 0);
+                tbb::parallel_for(std::size_t{0}, rigs, [&](std::size_t i) {
+                    underbody::core::Random random(seed + i);
+                    WatchedRig rig(seed + i);
+                    rig.spring = spring;
+                    rig.colour = colour;
+                    alarms[i] = alarms_after_found(rig, random.normal(), stated);
+                });
+                std::printf("%s, noise AR %.1f, error of the number %s: %d alarms in %zu h, on %td rigs of %zu\n",
+                            spring > 0 ? "spring" : "free body", colour, stated ? "stated" : "unsaid",
+                            std::accumulate(alarms.begin(), alarms.end(), 0), rigs,
+                            std::count_if(alarms.begin(), alarms.end(), [](int n) { return n > 0; }), rigs);
+                std::fflush(stdout);
+            }
+        }
+    }
+}
+
 void measure_speed() {
     WatchedRig rig(5);
     rig.step = 1e-3;
@@ -195,13 +247,17 @@ int main(int argc, char** argv) {
     const auto given = [&](int i, double otherwise) { return argc > i ? std::atof(argv[i]) : otherwise; };
     if (argc > 1 && std::strcmp(argv[1], "delays") == 0) {
         measure_delays(static_cast<std::uint64_t>(given(2, 10)));
+    } else if (argc > 1 && std::strcmp(argv[1], "found") == 0) {
+        count_after_found(static_cast<std::size_t>(given(2, 20)), static_cast<std::size_t>(given(3, 1)));
     } else if (argc > 1 && std::strcmp(argv[1], "speed") == 0) {
         measure_speed();
     } else if (argc > 1 && std::strcmp(argv[1], "false-alarms") == 0) {
         count_false_alarms(given(2, 24), given(3, 1), static_cast<int>(given(4, 0)),
                            static_cast<std::size_t>(given(5, 0)));
     } else {
-        std::fprintf(stderr, "bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]] | delays [SEEDS] | speed\n");
+        std::fprintf(
+            stderr,
+            "bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]] | delays [SEEDS] | found [RIGS [SEED]] | speed\n");
         return 2;
     }
     return 0;
