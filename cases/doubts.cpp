@@ -53,6 +53,12 @@ std::vector<std::string> warnings_of(const MeasurementSpec& measurement, const S
     return warnings;
 }
 
+std::vector<std::string> warnings_of(const RegionSpec& region, const StudyResults& results) {
+    const std::string* map = results.document("region/" + region.name);
+    return map == nullptr ? std::vector<std::string>()
+                          : nlohmann::json::parse(*map).at("beside_tables").get<std::vector<std::string>>();
+}
+
 std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results) {
     const MeshResult* mesh = find_result(results.meshes, table.mesh_uncertainty);
     const auto* found = mesh == nullptr ? nullptr : mesh->find(table.quantity);

@@ -15,6 +15,9 @@ std::vector<std::string> doubts_of_model(const Study& study, const StudyResults&
 /// hold none.
 std::vector<std::string> warnings_of(const MeasurementSpec& measurement, const StudyResults& results);
 
+/// What a map takes otherwise than the study's tables: another speed, weight or water, or a speed that nobody states.
+std::vector<std::string> warnings_of(const RegionSpec& region, const StudyResults& results);
+
 /// Sentences for a table whose error is of a mesh study that does not converge.
 std::vector<std::string> doubts_of_mesh(const TableSpec& table, const StudyResults& results);
 

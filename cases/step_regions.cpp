@@ -72,17 +72,26 @@ void run_one_region(Engine& engine, const RegionSpec& spec) {
         key.add("net_weight", table.net_weight.value_or(NAN)).add("virtual_mass", table.virtual_mass);
     }
     key.add("axes", spec.axes).add("for", spec.duration).add("columns", spec.columns).add("rows", spec.rows);
-    std::string scratch_folder;  // a path of this moment, which a remark about a table may name
+    auto beside_tables = nlohmann::json::array();  // what the map takes otherwise than the study's tables
+    std::string scratch_folder;                    // a path of this moment, which a remark about a table may name
     Shared<dynamics::StabilityRegion> region(engine.states(), [&] {
         const Scratch scratch;
         scratch_folder = scratch.path().string() + "/";
         const auto model =
             named_in_study(engine, region_model(engine.study, spec, engine.results, scratch.path()), spec.model);
+        for (const auto& remark : model.remarks) {
+            // Said of the whole model, not of a line or a table: where the study's tables and the model do not fit.
+            if (remark.severity == core::Problem::Severity::warning && remark.place.file == model.name &&
+                !remark.place.line) {
+                beside_tables.push_back(remark.message);
+            }
+        }
         return dynamics::stability_region(model, region_options(spec), engine.progress);
     });
     const auto made = engine.make("region", spec.name, key, [&] {
         nlohmann::json document;
         dynamics::to_json(document, region.get());
+        document["beside_tables"] = beside_tables;
         std::string text = document.dump();
         for (auto at = text.find(scratch_folder); at != std::string::npos; at = text.find(scratch_folder, at)) {
             text.erase(at, scratch_folder.size());

@@ -105,10 +105,8 @@ void warn_of_checks(Shell& shell, const cases::Study& study, const cases::StudyR
         for (const auto& doubt : cases::doubts_of_model(study, results, region)) {
             shell.show_warning("map '" + region.name + "': " + doubt);
         }
-        if (const auto* map = find_result(results.regions, region.name)) {
-            for (const auto& remark : map->remarks) {
-                shell.show_warning("map '" + region.name + "': " + remark);
-            }
+        for (const auto& warning : cases::warnings_of(region, results)) {
+            shell.show_warning("map '" + region.name + "': " + warning);
         }
     }
     for (const auto& measurement : study.measurements) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cases/code_version.h"
+#include "cases/doubts.h"
 #include "cases/why.h"
 #include "core/file.h"
 #include "core/hash.h"
@@ -163,6 +164,11 @@ TEST_F(Why, WhatAllCasesOfATableShareGoesWithIt) {
 
 /// [reference] says the speed of cases that do not: their tables hold for it, and a map scales its force from it.
 TEST_F(Why, ASpeedThatOnlyTheReferenceSaysIsThatOfTheTables) {
+    const auto warned = [&] {  // at study run
+        const Study study = Study::open(folder);
+        return warnings_of(study.regions.front(), run_study(study, options()));
+    };
+    EXPECT_TRUE(warned().empty());
     std::string text = core::read_file(folder / "study.toml");
     for (const std::string& away : {std::string("conditions.speed = \"0.5 m/s\"\n"), std::string(", speed = 0.5")}) {
         ASSERT_NE(text.find(away), std::string::npos);
@@ -174,12 +180,14 @@ TEST_F(Why, ASpeedThatOnlyTheReferenceSaysIsThatOfTheTables) {
     const fs::path report = folder / "report" / "index.html";
     EXPECT_THAT(core::read_file(model), Not(HasSubstr("scale.speed")));
     EXPECT_THAT(core::read_file(report), HasSubstr("states a speed, nor does [reference]"));
+    EXPECT_THAT(warned(), testing::ElementsAre(HasSubstr("states a speed, nor does [reference]")));
     core::write_file(folder / "study.toml", text + "[reference]\nspeed = \"0.4 m/s\"\n");
     run();
     EXPECT_THAT(core::read_file(model), HasSubstr("scale.speed = { reference = \"0.4 m/s\", exponent = 2 }"));
     EXPECT_THAT(core::read_file(folder / "report" / "exports" / "lift.h"), HasSubstr("Holds for speed = 0.4 m/s"));
     EXPECT_THAT(core::read_file(report), Not(HasSubstr("nor does [reference]")));
     EXPECT_THAT(core::read_file(report), HasSubstr("(0.5/0.4)^2"));
+    EXPECT_THAT(warned(), testing::ElementsAre(HasSubstr("(0.5/0.4)^2")));
 }
 
 TEST_F(Why, TheMapSaysWhereItsModelIsNotTheOneOfTheTable) {
