@@ -1,5 +1,6 @@
 #include "studio/cli/force_notes.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "studio/cli/shell.h"
@@ -22,11 +23,16 @@ std::vector<std::string> said(Shell& shell, const core::Problems& problems) {
     return messages;
 }
 
+/// Of the model and of its force tables, each once.
 core::Problems table_remarks(const dynamics::Model& model) {
-    core::Problems all;
+    core::Problems all = model.remarks;
     for (const dynamics::ForceSource& source : model.forces) {
-        const core::Problems& own = source.table.remarks();
-        all.insert(all.end(), own.begin(), own.end());
+        for (const core::Problem& own : source.table.remarks()) {
+            if (std::none_of(all.begin(), all.end(),
+                             [&](const core::Problem& known) { return known.message == own.message; })) {
+                all.push_back(own);
+            }
+        }
     }
     return all;
 }

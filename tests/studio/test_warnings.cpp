@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/file.h"
+#include "core/own_files.h"
 #include "core/table.h"
 #include "tests/support/small_study.h"
 #include "tests/support/support.h"
@@ -189,6 +190,20 @@ TEST_F(Warnings, StandInTheTablesThatMotionsLeave) {
         {"control", "model.toml", "--hold", "8mm", "--from", "gap=9mm", "--for", "1", "--limit", "1e-6 N", "--json"},
         folder.path());
     EXPECT_THAT(json::parse(weak.output)["warnings"].dump(), HasSubstr("cannot hold this gap"));
+}
+
+TEST_F(Warnings, OfWhatADiscoveryCouldNotTellApartStandWithWhatTheModelGives) {
+    write_files();
+    const auto file = folder.path() / "model.toml";
+    const core::ReplacingAllowed again;
+    core::write_file(
+        file, core::read_file(file) + "[lineage]\nmade_from = [\"tied: coulomb_friction, or linear_damping\"]\n");
+    const std::string tied = "its data could not well tell what was found from other effects .coulomb_friction, or";
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"predict", "model.toml", "--data", "data"}, {"linear", "model.toml"}}) {
+        EXPECT_THAT(run_underbody(words, folder.path()).output, testing::ContainsRegex("arning: [^\n]*" + tied))
+            << words.front();
+    }
 }
 
 TEST_F(Warnings, OfAnExportStandOnStderrForStdoutListsItsFiles) {
