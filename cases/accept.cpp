@@ -92,6 +92,16 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
+namespace {
+
+/// The model of a map with the study's tables in it, as `study run` writes it: a measurement that was judged by it
+/// found what the map lacks, and the found model has these tables already.
+bool is_model_of_map(const Study& study, const RegionSpec& spec, const fs::path& model) {
+    return !spec.forces.empty() && same_file(model, study.folder() / "report" / "models" / spec.name / "model.toml");
+}
+
+}  // namespace
+
 Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement) {
     Accepted accepted;
     const Files found = found_files(study, results, measurement, accepted.sentence);
@@ -114,6 +124,9 @@ Accepted accept_model(const Study& study, const StudyResults& results, const std
     for (const auto& spec : study.regions) {
         if (same_file(spec.model, old)) {
             take("region", spec.name);
+        } else if (is_model_of_map(study, spec, old)) {
+            take("region", spec.name);
+            accepted.study_text = with_value(accepted.study_text, "region", spec.name, "forces", "[]");
         }
     }
     return accepted;
@@ -137,6 +150,10 @@ Study with_accepted(const Study& study, const StudyResults& results, const std::
         spec.model = same_file(spec.model, old) ? found : spec.model;
     }
     for (auto& spec : changed.regions) {
+        if (is_model_of_map(study, spec, old)) {
+            spec.forces.clear();
+            spec.model = found;
+        }
         spec.model = same_file(spec.model, old) ? found : spec.model;
     }
     return changed;

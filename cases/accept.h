@@ -20,7 +20,8 @@ struct Accepted {
 
 /// What accepting would change; nothing is written. The files are those of the stored discovery (else of the report
 /// beside the study, which must be of the same result); the model becomes that of the measurement and of each
-/// [[region]] and [[measurement]] that had the same. Throws core::UsageError: no such measurement; core::InputError:
+/// [[region]] and [[measurement]] that had the same; of a [[region]] whose model with the study's tables it was, too,
+/// without `forces`: the found model has them. Throws core::UsageError: no such measurement; core::InputError:
 /// nothing was discovered of it, or nothing is missing in its model, or the report is of an older result.
 Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement);
 

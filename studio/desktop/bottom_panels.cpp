@@ -9,6 +9,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSignalBlocker>
+#include <QTextCursor>
 #include <QToolButton>
 
 #include "studio/desktop/qt_text.h"
@@ -37,6 +38,8 @@ CommandList::CommandList(Desk& desk, QWidget* parent) : QWidget(parent) {
     row->addLayout(buttons);
     connect(&desk, &Desk::acted, this, [this](const QString& line, const QString& command) {
         text_->appendPlainText(command.isEmpty() ? line : line + "\n    # " + command);
+        text_->moveCursor(QTextCursor::End);
+        text_->moveCursor(QTextCursor::StartOfBlock);  // the beginning of a long line is what is seen
     });
 }
 

@@ -14,6 +14,7 @@
 
 class QComboBox;
 class QLabel;
+class QScrollArea;
 class QSplitter;
 class QTableWidget;
 class QTimer;
@@ -75,10 +76,19 @@ private:
     void make_scene();
     void fill_rows(const std::string& name, const geometry::BodyShape& shape);
     void make_rows();
+    struct Group {
+        std::string part;
+        QToolButton* head = nullptr;
+        QWidget* rows = nullptr;
+        std::optional<bool> chosen;  ///< by hand
+    };
+    void show_group(const Group& group);
     /// Its rows are folded away where the shape has no such part, until somebody unfolds them.
     QVBoxLayout& add_group(const std::string& part);
     void add_words(const std::string& part, QVBoxLayout& column);
     void show_groups();
+    /// Unfolds the part of a number and gives it the keyboard.
+    void find_row(const QString& parameter);
     [[nodiscard]] std::set<std::string> open_groups() const;
     void ask_ranges();
     void connect_row(ParameterRow* row, const std::string& verb, const std::string& key, const std::string& unit);
@@ -148,12 +158,6 @@ private:
     QToolButton* outline_ = nullptr;
     QToolButton* fit_ = nullptr;
     QComboBox* choice_ = nullptr;
-    struct Group {
-        std::string part;
-        QToolButton* head = nullptr;
-        QWidget* rows = nullptr;
-        std::optional<bool> chosen;  ///< by hand
-    };
     std::vector<Group> groups_;
     std::vector<std::pair<std::string, ParameterRow*>> rows_;
     std::vector<std::pair<std::string, QComboBox*>> words_;
@@ -172,6 +176,7 @@ private:
     PlotView* lift_plot_ = nullptr;
     PlotView* map_plot_ = nullptr;
     QVBoxLayout* parameter_column_ = nullptr;
+    QScrollArea* parameter_area_ = nullptr;
 };
 
 }  // namespace underbody::studio

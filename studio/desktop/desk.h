@@ -61,6 +61,8 @@ Q_SIGNALS:
     void opened(const QString& folder);
     void refused(const QString& what, std::exception_ptr error);
     void noted(const QString& text);
+    /// Somebody looks for a number of the shape ("protrusion.height").
+    void sought(const QString& parameter);
     void found(const core::Problem& problem);
     /// An action was done: its line, and the command that does the same (may be empty).
     void acted(const QString& line, const QString& command);

@@ -75,6 +75,7 @@ private:
     std::shared_ptr<const MadeShapes> shapes_;
     std::string shapes_of_;  ///< what they are made of, or being made
     std::string axes_of_;
+    std::string order_of_;    ///< that the axes are in
     std::string ranks_of_;    ///< as axes_of_
     std::vector<int> ranks_;  ///< of the rows, in the natural order of their names
     QComboBox* what_ = nullptr;

@@ -11,17 +11,20 @@
 #include <QMessageBox>
 #include <QPlainTextEdit>
 #include <QPointer>
-#include <QProcess>
+#include <QProgressBar>
 #include <QPushButton>
 #include <QSplitter>
 #include <QTimer>
 #include <algorithm>
 
 #include "cases/export_files.h"
+#include "cases/prove_export.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/hash.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "studio/desktop/export_preview.h"
 #include "studio/desktop/parameter_row.h"
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/problems_panel.h"
@@ -34,6 +37,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* proof_slot = "export proof";
+
 QString said_of(const std::exception_ptr& error) {
     const Told told = tell(error);
     return told.message + (told.hint.isEmpty() ? "" : "\n" + told.hint);
@@ -41,12 +46,16 @@ QString said_of(const std::exception_ptr& error) {
 
 }  // namespace
 
-ExportDialog::ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
-                           TableOfStudy of)
-    : QDialog(parent), jobs_(jobs), all_(std::move(all)), of_(std::move(of)) {
+ExportDialog::ExportDialog(Jobs& jobs, std::shared_ptr<const tables::ForceTable> table, QWidget* parent,
+                           TableOfStudy of, Make make)
+    : QDialog(parent), jobs_(jobs), table_(std::move(table)), of_(std::move(of)), make_(std::move(make)) {
+    if (!make_) {
+        make_ = [known = table_](const auto& range, core::Progress&) { return refitted(*known, range); };
+    }
     setObjectName("export");
     setAttribute(Qt::WA_DeleteOnClose);
-    setWindowTitle("Export " + qt(all_.front()->quantity()).replace('_', ' ') + " for a controller");
+    const QString found = of_.found.empty() ? QString() : " with " + qt(of_.found).replace('_', ' ');
+    setWindowTitle("Export " + qt(table_->quantity()).replace('_', ' ') + found + " for a controller");
     resize(1060, 660);
     soon_ = new QTimer(this);
     soon_->setSingleShot(true);
@@ -71,6 +80,11 @@ void ExportDialog::build() {
     proof_ = new QLabel;
     proof_->setWordWrap(true);
     form->addRow(proof_);
+    proving_ = new QProgressBar;
+    proving_->setRange(0, 1000);
+    proving_->setAccessibleName("How far the proof is");
+    proving_->hide();
+    form->addRow(proving_);
     error_ = new PlotView(this);
     error_->set_least(QSize(200, 220));
     form->addRow(error_);
@@ -101,7 +115,7 @@ void ExportDialog::add_choices(QFormLayout& form) {
     }
     format_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     form.addRow("&Format", format_);
-    name_ = new QLineEdit(qt(of_.name.empty() ? all_.front()->quantity() : cases::export_name(of_.name)));
+    name_ = new QLineEdit(qt(of_.name.empty() ? table_->quantity() : cases::export_name(of_.name)));
     form.addRow("&Name", name_);
     frame_ = new QComboBox;
     frame_->addItems({"up: lift positive up", "ned: body axes, z down"});
@@ -115,7 +129,7 @@ void ExportDialog::add_choices(QFormLayout& form) {
 }
 
 void ExportDialog::add_policies(QFormLayout& form) {
-    for (const auto& axis : all_.front()->axes()) {
+    for (const auto& axis : table_->axes()) {
         auto* policy = new QComboBox;
         for (const auto one :
              {tables::RangePolicy::clamp, tables::RangePolicy::refuse, tables::RangePolicy::extrapolate}) {
@@ -132,16 +146,30 @@ void ExportDialog::add_policies(QFormLayout& form) {
 void ExportDialog::add_buttons(QBoxLayout& column) {
     auto* buttons = new QHBoxLayout;
     prove_ = new QPushButton("&Prove");
-    prove_->setToolTip("Compiles the C header with the compiler of this machine and compares it at 200 points");
+    prove_->setToolTip(
+        "Compiles the C header with the compiler of this machine and compares it at 10,000 points, as\n"
+        "underbody export ... --prove does");
+    write_all_ = new QPushButton;
+    set_marked({});
     auto* write_button = new QPushButton("&Write …");
     write_button->setDefault(true);
     auto* close_button = new QPushButton("Close");
     buttons->addWidget(prove_);
     buttons->addStretch(1);
+    buttons->addWidget(write_all_);
     buttons->addWidget(write_button);
     buttons->addWidget(close_button);
     column.addLayout(buttons);
-    connect(prove_, &QPushButton::clicked, this, &ExportDialog::prove);
+    connect(prove_, &QPushButton::clicked, this,
+            [this] { jobs_.busy(proof_slot) ? jobs_.cancel(proof_slot) : prove(); });
+    connect(&jobs_, &Jobs::changed, this, &ExportDialog::show_proof_running);
+    connect(write_all_, &QPushButton::clicked, this, [this] {
+        try {
+            Q_EMIT all_wanted(record());
+        } catch (const core::Error& error) {
+            proof_->setText("Not written: " + qt(error.what()));
+        }
+    });
     connect(write_button, &QPushButton::clicked, this, &ExportDialog::choose_and_write);
     connect(close_button, &QPushButton::clicked, this, &QDialog::close);
 }
@@ -153,7 +181,9 @@ tables::ExportOptions ExportDialog::options() const {
     options.name = name_->text().trimmed().toStdString();
     options.single_precision = single_->isChecked();
     options.frame = frame_->currentIndex() == 1 ? tables::Frame::ned : tables::Frame::up;
-    if (as_fitted() && !of_.origin.empty()) {
+    if (!of_.found.empty()) {
+        options.provenance = {of_.found_line()};
+    } else if (as_fitted() && !of_.origin.empty()) {
         options.provenance = {of_.origin};
     }
     if (const std::string text = max_error_->text().trimmed().remove('%').toStdString(); !text.empty()) {
@@ -175,28 +205,49 @@ tables::RangePolicy chosen_in(const QComboBox& policy) {
 }  // namespace
 
 bool ExportDialog::as_fitted() const {
-    const auto& axes = all_.front()->axes();
+    const auto& axes = table_->axes();
     return std::equal(policies_.begin(), policies_.end(), axes.begin(), axes.end(),
                       [](const auto& chosen, const auto& axis) { return chosen_in(*chosen.second) == axis.range; });
 }
 
-tables::ForceTable ExportDialog::table() const {
-    const auto& known = *all_.front();
-    if (as_fitted()) {
-        return known;
+std::map<std::string, std::string> ExportDialog::range() const {
+    std::map<std::string, std::string> range;
+    if (!as_fitted()) {
+        for (const auto& [axis, policy] : policies_) {
+            range[axis] = policy->currentData().toString().toStdString();
+        }
     }
-    tables::FitOptions fit;
+    return range;
+}
+
+ExportRecord ExportDialog::record() const {
+    const tables::ExportOptions wanted = options();
+    ExportRecord record;
+    record.table = of_.name;
+    record.format = format();
+    record.name = wanted.name;
+    record.frame = wanted.frame == tables::Frame::ned ? "ned" : "up";
+    record.number = wanted.single_precision ? "float" : "double";
+    if (wanted.max_error > 0) {
+        record.max_error = wanted.max_error;
+    }
     for (const auto& [axis, policy] : policies_) {
-        fit.range.named.emplace_back(axis, chosen_in(*policy));
-        fit.axes.push_back(axis);
+        record.range[axis] = policy->currentData().toString().toStdString();
     }
-    fit.kind = known.kind().find("aussian") != std::string::npos  ? tables::FitOptions::Kind::gaussian_process
-               : known.kind().find("spline") != std::string::npos ? tables::FitOptions::Kind::spline
-                                                                  : tables::FitOptions::Kind::interpolation;
-    return tables::ForceTable::fit(known.points(), known.quantity(), fit);
+    return record;
+}
+
+void ExportDialog::set_marked(const QStringList& tables) {
+    write_all_->setText(tables.isEmpty() ? QString("Write all marked …")
+                                         : QString("Write &all %1 marked …").arg(tables.size()));
+    write_all_->setEnabled(!tables.isEmpty());
+    write_all_->setToolTip(tables.isEmpty() ? QString("Marked are tables that are selected in the tree (Ctrl+click) or "
+                                                      "have a star (Ctrl+B)")
+                                            : "Writes into one folder, as this one is: " + tables.join(", "));
 }
 
 void ExportDialog::refresh() {
+    jobs_.cancel(proof_slot);  // of what stood there before
     proof_->clear();
     prove_->setEnabled(format() == "c");
     format_->setToolTip(format_->currentText());  // longer than its place
@@ -205,7 +256,7 @@ void ExportDialog::refresh() {
     }
     command_->clear();
     try {
-        ask_preview(options(), table());
+        ask_preview(options());
         command_->setText(command("FILE"));
     } catch (const core::Error& error) {
         jobs_.cancel("export preview");  // of what stood there before
@@ -213,54 +264,14 @@ void ExportDialog::refresh() {
     }
 }
 
-namespace {
-
-/// What would be written, and how far it is from the table.
-struct Seen {
-    QString facts, text;
-    core::Figure error;
-};
-
-Seen seen_of(const tables::ForceTable& table, const std::string& kind, const tables::ExportOptions& wanted,
-             core::Progress& progress) {
-    const core::TemporaryFolder folder;
-    std::string ending;
-    for (const auto& one : tables::export_formats()) {
-        ending = one.name == kind ? one.ending : ending;
-    }
-    const fs::path file = folder.path() / (wanted.name + ending);
-    const auto result = tables::export_table(table, kind, file, wanted, progress);
-    const std::string bytes = core::read_file(file);
-    Seen seen;
-    if (result.error > 0) {
-        seen.error = tables::export_difference_figure(table, kind, wanted, progress);
-    }
-    seen.facts = "grid ";
-    for (std::size_t i = 0; i < result.grid.size(); ++i) {
-        seen.facts += (i > 0 ? " x " : "") + QString::number(result.grid[i]);
-    }
-    seen.facts += QString(" points; file %1 bytes").arg(bytes.size());
-    seen.facts +=
-        result.error > 0
-            ? QString("; within %1 %2 of the table").arg(qt(core::format_number(result.error, 3)), qt(table.unit()))
-            : QString("; equal to the table");
-    for (const auto& remark : result.remarks) {
-        seen.facts += "\n" + qt(remark.message);
-    }
-    const bool text = bytes.find('\0') == std::string::npos;
-    seen.text = text ? qt(bytes.substr(0, 200000)) : QString("(a binary file)");
-    return seen;
-}
-
-}  // namespace
-
-void ExportDialog::ask_preview(const tables::ExportOptions& wanted, const tables::ForceTable& chosen) {
+void ExportDialog::ask_preview(const tables::ExportOptions& wanted) {
     jobs_.start(
         "export preview", "preview",
-        [self = QPointer<ExportDialog>(this), wanted, chosen, kind = format()](core::Progress& progress) {
-            Seen seen;
+        [self = QPointer<ExportDialog>(this), wanted, make = make_, range = range(),
+         kind = format()](core::Progress& progress) {
+            ExportPreview seen;
             try {
-                seen = seen_of(chosen, kind, wanted, progress);
+                seen = preview_of(make(range, progress), kind, wanted, progress);
             } catch (const core::Cancelled&) {
                 throw;
             } catch (const core::Error& error) {  // said in the dialog, not behind it
@@ -281,51 +292,38 @@ void ExportDialog::ask_preview(const tables::ExportOptions& wanted, const tables
 }
 
 QString ExportDialog::command(const QString& path) const {
-    Words words = {"underbody",
-                   "export",
-                   of_.file.empty() ? "TABLE.csv" : of_.file,
-                   "--quantity",
-                   all_.front()->quantity(),
-                   "--format",
-                   format(),
-                   "--out",
-                   path.toStdString(),
-                   "--name",
-                   name_->text().toStdString()};
-    if (frame_->currentIndex() == 1) {
-        words.insert(words.end(), {"--frame", "ned"});
-    }
-    if (single_->isChecked()) {
-        words.insert(words.end(), {"--number", "float"});
-    }
-    if (!max_error_->text().trimmed().isEmpty()) {
-        words.insert(words.end(), {"--max-error", max_error_->text().trimmed().remove('%').toStdString() + "%"});
-    }
-    std::string range;
-    for (const auto& [axis, box] : policies_) {
-        range += (range.empty() ? "" : ",") + axis + "=" + box->currentData().toString().toStdString();
-    }
-    words.insert(words.end(), {"--range", range});
-    return qt(of_.line(words));
+    return qt(of_.line(of_.command(table_->quantity(), path.toStdString(), record())));
 }
 
 void ExportDialog::write(const fs::path& path) {
     tables::ExportOptions wanted = options();
     wanted.overwrite = true;  // the person was asked
-    tables::export_table(table(), format(), path, wanted);
-    ExportRecord record;
-    record.format = format();
-    record.name = wanted.name;
-    record.frame = frame_->currentIndex() == 1 ? "ned" : "up";
-    record.number = wanted.single_precision ? "float" : "double";
-    if (wanted.max_error > 0) {
-        record.max_error = wanted.max_error;
-    }
-    for (const auto& [axis, box] : policies_) {
-        record.range[axis] = box->currentData().toString().toStdString();
-    }
-    Q_EMIT exported(qt(path.string()), record);
-    Q_EMIT written(command(qt(path.string())));
+    proof_->setText("writing …");
+    jobs_.start("export write", "writing " + qt(path.filename().string()),
+                [self = QPointer<ExportDialog>(this), wanted, path, record = record(), make = make_, range = range(),
+                 line = command(qt(path.string()))](core::Progress& progress) -> std::function<void()> {
+                    ExportRecord done = record;
+                    try {
+                        tables::export_table(make(range, progress), record.format, path, wanted, progress);
+                        done.written = core::content_hash(core::read_file(path));
+                    } catch (const core::Cancelled&) {
+                        throw;
+                    } catch (const core::Error&) {  // said in the dialog, not behind it
+                        return [self, path, error = std::current_exception()] {
+                            if (self) {
+                                self->proof_->setText("Not written: " + said_of(error));
+                                Q_EMIT self->failed("writing " + qt(path.string()), error);
+                            }
+                        };
+                    }
+                    return [self, path, done, line] {
+                        if (self) {
+                            self->proof_->setText("Wrote " + qt(path.string()));
+                            Q_EMIT self->exported(qt(path.string()), done);
+                            Q_EMIT self->written(line);
+                        }
+                    };
+                });
 }
 
 void ExportDialog::choose_and_write() {
@@ -360,70 +358,49 @@ void ExportDialog::write_to(const QString& path) {
 QString ExportDialog::proof() const { return proof_->text(); }
 QString ExportDialog::preview() const { return text_->toPlainText(); }
 
-namespace {
-
-struct Proof {
-    QString sentence;
-    bool equal = false;
-};
-
-bool has_run(const QString& folder, const QString& program, const QStringList& arguments, QString& said) {
-    QProcess process;
-    process.setWorkingDirectory(folder);
-    process.setProcessChannelMode(QProcess::MergedChannels);
-    process.start(program, arguments);
-    const bool ended = process.waitForStarted() && process.waitForFinished(60000);
-    said = QString::fromUtf8(process.readAll()).trimmed();
-    return ended && process.exitStatus() == QProcess::NormalExit && process.exitCode() == 0;
-}
-
-Proof proof_of(const tables::ForceTable& table, const tables::ExportOptions& wanted, core::Progress& progress) {
-    const core::TemporaryFolder folder;
-    const QString place = qt(folder.path().string());
-    const auto result = tables::export_table(table, "c", folder.path() / (wanted.name + ".h"), wanted, progress);
-    const QString source = qt(result.files.back().filename().string());
-    QString said;
-    if (!has_run(place, "cc", {"-std=c99", "-O1", "-o", "proof", source, "-lm"}, said)) {
-        return {"It could not be compiled: " + (said.isEmpty() ? QString("there is no C compiler (cc)") : said), false};
-    }
-    if (!has_run(place, place + "/proof", {}, said)) {
-        return {"NOT equal: " + said, false};
-    }
-    return {"Compiled, run and equal: value, slope and error at 200 points, within the table and beyond.", true};
-}
-
-}  // namespace
-
 void ExportDialog::prove() {
     try {
-        tables::ExportOptions wanted = options();
-        wanted.self_test = true;
-        ask_proof(wanted, table());
+        ask_proof(options());
     } catch (const core::Error& error) {  // said in the dialog, not behind it
         proof_->setText("Not proved: " + qt(error.what()));
         Q_EMIT proved(false);
     }
 }
 
-void ExportDialog::ask_proof(const tables::ExportOptions& wanted, const tables::ForceTable& chosen) {
-    proof_->setText("compiling …");
-    jobs_.start("export proof", "compiling and comparing",
-                [self = QPointer<ExportDialog>(this), wanted, chosen](core::Progress& progress) {
-                    Proof proof;
+void ExportDialog::ask_proof(const tables::ExportOptions& wanted) {
+    proof_->setText("Not proved: stopped");  // until it is
+    jobs_.start(proof_slot, "proving " + qt(wanted.name) + ".h",
+                [self = QPointer<ExportDialog>(this), wanted, make = make_, range = range()](core::Progress& progress) {
+                    cases::Proof proof;
                     try {
-                        proof = proof_of(chosen, wanted, progress);
+                        proof = cases::prove_export({make(range, progress)}, wanted, progress);
                     } catch (const core::Cancelled&) {
                         throw;
                     } catch (const core::Error& error) {
-                        proof.sentence = "Not proved: " + qt(error.what());
+                        proof.sentence = "Not proved: " + std::string(error.what());
                     }
                     return [self, proof] {
                         if (self) {
-                            self->proof_->setText(proof.sentence);
+                            self->proof_->setText(qt(proof.sentence));
                             Q_EMIT self->proved(proof.equal);
                         }
                     };
                 });
+    show_proof_running();
+}
+
+/// While it runs the button stops it.
+void ExportDialog::show_proof_running() {
+    const bool running = jobs_.busy(proof_slot);
+    prove_->setText(running ? "Sto&p proving" : "&Prove");
+    proving_->setVisible(running);
+    proof_->setVisible(!running);
+    for (const auto& row : jobs_.rows()) {
+        if (row.what.startsWith("proving ")) {
+            proving_->setFormat(row.doing.isEmpty() ? "proving …" : row.doing + " …");
+            proving_->setValue(static_cast<int>(1000 * row.fraction));
+        }
+    }
 }
 
 }  // namespace underbody::studio

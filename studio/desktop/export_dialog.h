@@ -3,6 +3,8 @@
 #pragma once
 
 #include <QDialog>
+#include <functional>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,6 +19,7 @@ class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QPlainTextEdit;
+class QProgressBar;
 class QPushButton;
 class QTimer;
 
@@ -27,12 +30,14 @@ class PlotView;
 class ExportDialog : public QDialog {
     Q_OBJECT
 public:
-    /// `of`: the table of the study that the first one is.
-    ExportDialog(Jobs& jobs, std::vector<std::shared_ptr<const tables::ForceTable>> all, QWidget* parent,
-                 TableOfStudy of = {});
+    /// The table with other policies beyond its ends (axis -> policy; none: its own). Runs in a job.
+    using Make = std::function<tables::ForceTable(const std::map<std::string, std::string>& range, core::Progress&)>;
+    /// `of`: the table of the study that it is. `make`: how it is made; not said: fitted again to its points.
+    ExportDialog(Jobs& jobs, std::shared_ptr<const tables::ForceTable> table, QWidget* parent, TableOfStudy of = {},
+                 Make make = {});
     /// The command that writes the same.
     [[nodiscard]] QString command(const QString& path) const;
-    /// Writes; throws core::Error.
+    /// Writes in a job; throws core::Error where the choices are wrong.
     void write(const std::filesystem::path& path);
     /// As the button does: what stands in the way is said in the dialog.
     void write_to(const QString& path);
@@ -41,12 +46,18 @@ public:
     [[nodiscard]] QString proof() const;
     [[nodiscard]] QString preview() const;
     [[nodiscard]] const PlotView* error() const { return error_; }
+    /// Tables of the study that *Write all marked* writes as this one is.
+    void set_marked(const QStringList& tables);
+    /// What is chosen. Throws core::Error.
+    [[nodiscard]] ExportRecord record() const;
 
 Q_SIGNALS:
     void written(const QString& command);
     /// What was written, and how; its table and digest are not known here.
     void exported(const QString& path, const ExportRecord& record);
     void failed(const QString& what, std::exception_ptr error);
+    /// All marked tables are to be written as this one.
+    void all_wanted(const ExportRecord& how);
     void proved(bool equal);
 
 private:
@@ -55,19 +66,21 @@ private:
     void add_policies(QFormLayout& form);
     void add_buttons(QBoxLayout& column);
     void refresh();
-    void ask_preview(const tables::ExportOptions& wanted, const tables::ForceTable& chosen);
-    void ask_proof(const tables::ExportOptions& wanted, const tables::ForceTable& chosen);
+    void ask_preview(const tables::ExportOptions& wanted);
+    void ask_proof(const tables::ExportOptions& wanted);
+    void show_proof_running();
     void choose_and_write();
     [[nodiscard]] std::string format() const;
     [[nodiscard]] tables::ExportOptions options() const;
     /// The policies beyond its ends are those of the table.
     [[nodiscard]] bool as_fitted() const;
-    /// The table with the chosen policies beyond its ends.
-    [[nodiscard]] tables::ForceTable table() const;
+    /// The chosen policies beyond its ends; none: its own.
+    [[nodiscard]] std::map<std::string, std::string> range() const;
 
     Jobs& jobs_;
-    std::vector<std::shared_ptr<const tables::ForceTable>> all_;
+    std::shared_ptr<const tables::ForceTable> table_;
     TableOfStudy of_;
+    Make make_;
     QComboBox* format_ = nullptr;
     QLineEdit* name_ = nullptr;
     QComboBox* frame_ = nullptr;
@@ -79,6 +92,8 @@ private:
     QLabel* proof_ = nullptr;
     PlotView* error_ = nullptr;  ///< along the table's first axis; hidden where the file equals the table
     QPushButton* prove_ = nullptr;
+    QPushButton* write_all_ = nullptr;
+    QProgressBar* proving_ = nullptr;
     QLabel* command_ = nullptr;
     QTimer* soon_ = nullptr;
 };

@@ -2,8 +2,6 @@
 #include <QActionGroup>
 #include <QApplication>
 #include <QBoxLayout>
-#include <QClipboard>
-#include <QDateTime>
 #include <QDesktopServices>
 #include <QDockWidget>
 #include <QFileDialog>
@@ -23,17 +21,13 @@
 #include "cases/accept.h"
 #include "cases/ask_cfd.h"
 #include "core/error.h"
-#include "core/file.h"
 #include "geometry/body/body_shape.h"
 #include "studio/desktop/catalogue.h"
-#include "studio/desktop/export_dialog.h"
-#include "studio/desktop/force_panel.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/palette.h"
 #include "studio/desktop/panel.h"
 #include "studio/desktop/problems_panel.h"
 #include "studio/desktop/qt_text.h"
-#include "studio/desktop/state/exports.h"
 #include "studio/desktop/study_tree.h"
 #include "studio/desktop/theme.h"
 
@@ -221,154 +215,6 @@ void MainWindow::build_tool_bar() {
     bar->addWidget(views);
 }
 
-bool MainWindow::write_chosen(QString path, const QStringList& endings,
-                              const std::function<void(const fs::path&)>& write) {
-    if (path.isEmpty()) {
-        return false;
-    }
-    bool fits = endings.isEmpty();
-    for (const auto& ending : endings) {
-        fits = fits || path.endsWith(ending, Qt::CaseInsensitive);
-    }
-    path += fits ? QString() : endings.front();
-    const QFileInfo file(path);
-    if (file.exists() &&
-        !ask("Replace",
-             file.fileName() + " is there already, of " + file.lastModified().toString("yyyy-MM-dd HH:mm") + ".",
-             "Replace it")) {
-        return false;
-    }
-    bool written = false;
-    guarded("writing " + file.fileName(), [&] {
-        write(path.toStdString());
-        problems_->note("Wrote " + path);
-        written = true;
-    });
-    return written;
-}
-
-namespace {
-/// The dialog does not ask: `write_chosen` does, when the ending is known.
-QString ask_path(QWidget* parent, const QString& title, const QString& name, const QString& filter) {
-    return QFileDialog::getSaveFileName(parent, title, name, filter, nullptr, QFileDialog::DontConfirmOverwrite);
-}
-}  // namespace
-
-QString MainWindow::proposed_file(const QString& ending) const {
-    return qt(proposed_name(desk_->state(), desk_->session())) + ending;
-}
-
-void MainWindow::save_session(bool elsewhere) {
-    const QString path = elsewhere || session_file_.isEmpty()
-                             ? ask_path(this, "Save session", QFileInfo(qt(desk_->state().study)).fileName() + ".ubs",
-                                        "Sessions (*.ubs)")
-                             : session_file_;
-    const auto write = [&](const fs::path& file) {
-        desk_->save_session_file(file);
-        session_file_ = qt(file.string());
-    };
-    if (path == session_file_ && !path.isEmpty()) {
-        guarded("saving the session", [&] { write(path.toStdString()); });
-    } else {
-        write_chosen(path, {".ubs"}, write);
-    }
-}
-
-void MainWindow::save_shape() {
-    guarded("saving the shape", [&] {
-        const std::string shown = shown_shape(desk_->state(), desk_->session());
-        if (shown.empty()) {
-            throw core::InputError("missing", "there is no shape to save");
-        }
-        write_chosen(ask_path(this, "Save shape", qt(shown) + ".toml", "Shapes (*.toml)"), {".toml"},
-                     [&](const fs::path& path) { write_shown_shape(path); });
-    });
-}
-
-void MainWindow::write_shown_shape(const fs::path& path) {
-    const std::string shown = shown_shape(desk_->state(), desk_->session());
-    auto shape = shape_of(desk_->state(), desk_->session(), shown);
-    shape.name = path.stem().string();
-    core::write_file(path, geometry::write_shape(shape));
-    Words line = shape_command(desk_->state(), desk_->session(), shown);
-    line.insert(line.end(), {"--as", path.string()});
-    problems_->note("The same: " + qt(line_of(line)));
-}
-
-void MainWindow::export_picture() {
-    guarded("exporting a picture", [&] {
-        if (!current()->has_picture()) {
-            throw core::InputError("missing", "this workspace shows no picture yet");
-        }
-        const QStringList endings = current()->picture_endings();
-        QString filter = "Pictures (";
-        for (const auto& ending : endings) {
-            filter += "*" + ending + " ";
-        }
-        write_chosen(ask_path(this, "Export picture", proposed_file(endings.front()), filter.trimmed() + ")"), endings,
-                     [&](const fs::path& path) { current()->export_picture(path); });
-    });
-}
-
-void MainWindow::export_table() {
-    guarded("exporting a table", [&] {
-        if (!current()->has_table()) {
-            throw core::InputError("missing", "this workspace shows no table yet");
-        }
-        write_chosen(ask_path(this, "Export table", proposed_file(".csv"), "Tables (*.csv)"), {".csv"},
-                     [&](const fs::path& path) { current()->export_table(path); });
-    });
-}
-
-void MainWindow::export_controller() {
-    guarded("exporting for a controller", [&] {
-        for (auto* panel : panels_) {
-            if (auto* forces = dynamic_cast<ForcePanel*>(panel); forces != nullptr && forces->table()) {
-                auto* dialog = new ExportDialog(*jobs_, {forces->table()}, this,
-                                                table_of_study(desk_->session(), forces->table_name()));
-                connect(dialog, &ExportDialog::written, this,
-                        [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
-                connect(dialog, &ExportDialog::exported, this,
-                        [this, table = forces->table_name()](const QString& path, ExportRecord record) {
-                            record.table = table;
-                            record.made_of = table_digest(desk_->session(), table);
-                            desk_->act(words_of_export(path.toStdString(), record));
-                        });
-                connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
-                dialog->show();
-                return;
-            }
-        }
-        throw core::InputError("missing", "no force table is shown yet", {}, "choose one in Tables (F6)");
-    });
-}
-
-/// All that is stale, in one job; each is remembered as made of what the table is now.
-void MainWindow::export_stale() {
-    const auto stale = stale_exports(desk_->state(), desk_->session());
-    if (stale.empty()) {
-        problems_->note("No exported file is stale.");
-        return;
-    }
-    jobs_->start(
-        "export again", "exporting again",
-        [this, stale, session = desk_->session_pointer(), records = desk_->state().exports](core::Progress& progress) {
-            std::vector<Words> done;
-            for (const auto& file : stale) {
-                ExportRecord record = records.at(file);
-                export_again(*session, file, record, progress);
-                record.made_of = table_digest(*session, record.table);
-                done.push_back(words_of_export(file, record));
-            }
-            return [this, done] {
-                for (const auto& words : done) {
-                    desk_->act(words);
-                    problems_->note("Exported " + qt(words[1]) + " again.");
-                }
-            };
-        });
-}
-
 void MainWindow::ask_for_cfd() {
     guarded("asking for CFD", [&] {
         const std::string shape = shown_shape(desk_->state(), desk_->session());
@@ -429,8 +275,6 @@ bool MainWindow::write_found_model(const std::string& measurement) {
     desk_->reload();
     return true;
 }
-
-void MainWindow::copy_picture() { QApplication::clipboard()->setImage(current()->picture_to_copy()); }
 
 void MainWindow::open_report() {
     const Session& session = desk_->session();

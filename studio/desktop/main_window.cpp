@@ -9,7 +9,6 @@
 #include <QFileInfo>
 #include <QFileSystemWatcher>
 #include <QLabel>
-#include <QLineEdit>
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
@@ -30,12 +29,12 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "studio/desktop/bottom_panels.h"
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/discovery_panel.h"
 #include "studio/desktop/explore_panel.h"
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/first_page.h"
+#include "studio/desktop/focus_ring.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/icon.h"
 #include "studio/desktop/input_guard.h"
@@ -53,9 +52,6 @@ namespace underbody::studio {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr int least_tree = 220;  ///< px: names of cases are read
-constexpr int most_below = 150;  ///< px, of what stands below where a workspace lacks room
 
 fs::path log_folder(bool remember) {
     return remember
@@ -91,6 +87,7 @@ MainWindow::MainWindow(bool remember)
     };
     watcher_ = new QFileSystemWatcher(this);
     new InputGuard(this);
+    new FocusRing(this);
     build_workspaces();
     build_tree();
     build_below();
@@ -138,10 +135,9 @@ void MainWindow::build_workspaces() {
     auto* centre = new QWidget;
     auto* column = new QVBoxLayout(centre);
     column->setContentsMargins(4, 4, 4, 0);
-    banner_ = new Banner(centre);
-    column->addWidget(banner_);
     middle_ = new QStackedWidget;
     column->addWidget(new Rolled(middle_), 1);
+    banner_ = new Banner(centre);  // over what is there
     connect(middle_, &QStackedWidget::currentChanged, this, [this](int current) {
         for (int i = 0; i < middle_->count(); ++i) {  // what is not seen needs no room
             const auto policy = i == current ? QSizePolicy::Preferred : QSizePolicy::Ignored;
@@ -169,48 +165,6 @@ void MainWindow::build_workspaces() {
         connect(panel, &Panel::remark, this, [this](const QString& text) { statusBar()->showMessage(text); });
         connect(panel, &Panel::problem, this, [this](const core::Problem& found) { problems_->add(found); });
     }
-}
-
-void MainWindow::build_tree() {
-    auto* holder = new QWidget;
-    auto* column = new QVBoxLayout(holder);
-    column->setContentsMargins(4, 4, 0, 0);
-    auto* filter = new QLineEdit;
-    filter->setPlaceholderText("Filter the study");
-    filter->setAccessibleName("Filter the study");
-    filter->setClearButtonEnabled(true);
-    column->addWidget(filter);
-    tree_ = new StudyTree(*desk_, holder);
-    column->addWidget(tree_, 1);
-    auto* count = new QLabel;
-    column->addWidget(count);
-    connect(filter, &QLineEdit::textChanged, tree_, &StudyTree::filter);
-    connect(tree_, &StudyTree::counted, count, &QLabel::setText);
-    tree_dock_ = new QDockWidget("Study", this);
-    tree_dock_->setObjectName("study_dock");
-    tree_dock_->setWidget(holder);
-    holder->setMinimumWidth(190);
-    addDockWidget(Qt::LeftDockWidgetArea, tree_dock_);
-    setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
-}
-
-void MainWindow::build_below() {
-    below_ = new QTabWidget;
-    below_->setDocumentMode(true);
-    below_->setTabPosition(QTabWidget::South);
-    problems_ = new ProblemList(this);
-    below_->addTab(new CommandList(*desk_, this), "Commands");
-    below_->addTab(problems_, "Problems");
-    below_->addTab(new JobList(*jobs_, this), "Jobs");
-    below_->addTab(new HistoryList(*desk_, this), "History");
-    below_->setCurrentWidget(problems_);
-    connect(problems_, &ProblemList::counted, this, [this](int count) {
-        below_->setTabText(1, count > 0 ? QString("Problems (%1)").arg(count) : QString("Problems"));
-    });
-    below_dock_ = new QDockWidget("Commands, problems, jobs, history", this);
-    below_dock_->setObjectName("below_dock");
-    below_dock_->setWidget(below_);
-    addDockWidget(Qt::BottomDockWidgetArea, below_dock_);
 }
 
 void MainWindow::build_status() {
@@ -302,7 +256,7 @@ void MainWindow::say_what_is_stale() {
     for (const auto& file : stale_exports(desk_->state(), desk_->session())) {
         problems_->add({core::Problem::Severity::warning,
                         "the exported file is stale: table '" + desk_->state().exports.at(file).table +
-                            "' has changed since, or the file is gone",
+                            "', or what was found of its force, has changed since, or the file is gone",
                         {file, {}, {}, {}}},
                        "Study > Export again what is stale (Ctrl+Shift+R)");
     }
@@ -392,57 +346,6 @@ void MainWindow::offer_recovery() {
         std::error_code none;
         fs::remove(log, none);
     }
-}
-
-/// The tree has all its columns where the workspaces leave them room; what stands below has a few lines.
-void MainWindow::showEvent(QShowEvent* event) {
-    QMainWindow::showEvent(event);
-    if (!laid_out_) {
-        laid_out_ = true;
-        const QSize left = size() - needed();
-        resizeDocks({tree_dock_}, {std::clamp(left.width() - 16, least_tree, 490)}, Qt::Horizontal);
-        resizeDocks({below_dock_}, {std::clamp(left.height() - 110, 84, most_below)}, Qt::Vertical);
-    }
-    QTimer::singleShot(0, this, &MainWindow::make_room);
-}
-
-void MainWindow::resizeEvent(QResizeEvent* event) {
-    QMainWindow::resizeEvent(event);
-    if (isVisible()) {
-        QTimer::singleShot(0, this, &MainWindow::make_room);
-    }
-}
-
-/// Of the workspace that needs most, with the bar that rolls it up and down.
-QSize MainWindow::needed() const {
-    QSize most;
-    for (const auto* panel : panels_) {
-        most = most.expandedTo(panel->minimumSizeHint());
-    }
-    return most + QSize(style()->pixelMetric(QStyle::PM_ScrollBarExtent, nullptr, this), 0);
-}
-
-/// The tree gives way before a workspace is rolled sideways, what stands below before it is rolled up and down.
-void MainWindow::make_room() {
-    const QMargins around = centralWidget()->layout()->contentsMargins();
-    const QSize lack = needed().grownBy(around) - centralWidget()->size();
-    // What was given is taken back where there is room again, unless somebody has moved the edge meanwhile.
-    const auto give = [this](QDockWidget* dock, GivenRoom& given, int size, int by, int least, Qt::Orientation along) {
-        if (!dock->isVisible() || dock->isFloating()) {
-            return;
-        }
-        constexpr int same = 8;  // px
-        if (given.by > 0 && std::abs(size - given.left) > same) {
-            given = {};
-        }
-        const int now = by > 0 ? std::max(std::min(size, least), size - by) : size + std::min(given.by, -by);
-        if (now != size) {
-            given = {given.by + size - now, now};
-            resizeDocks({dock}, {now}, along);
-        }
-    };
-    give(tree_dock_, tree_gave_, tree_dock_->width(), lack.width(), least_tree, Qt::Horizontal);
-    give(below_dock_, below_gave_, below_dock_->height(), lack.height(), most_below, Qt::Vertical);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

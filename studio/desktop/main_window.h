@@ -18,8 +18,14 @@ class QStackedWidget;
 class QTabWidget;
 class QToolButton;
 
+namespace underbody::tables {
+class ForceTable;
+}
+
 namespace underbody::studio {
 
+struct ExportRecord;
+struct TableOfStudy;
 class Banner;
 class FirstPage;
 class MeasurementSheet;
@@ -72,8 +78,11 @@ public:
     /// Writes the shape that Design shows, with its changes, as a SHAPE.toml. Throws core::Error.
     void write_shown_shape(const std::filesystem::path& path);
 
-    /// Writes the exported files again whose table has changed since, or that are gone.
+    /// Writes the exported files again whose table has changed since, or that are gone; asks before it replaces what
+    /// others have written.
     void export_stale();
+    /// Writes each marked table into a folder, in the way of `how`; asks likewise. False when nothing is written.
+    bool write_marked(const ExportRecord& how, const std::filesystem::path& folder);
 
     /// Copies the found model of a measurement into the study and names it there; asks first. False when it was not
     /// written. Throws core::Error.
@@ -119,6 +128,8 @@ private:
     void export_picture();
     void export_table();
     void export_controller();
+    void show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of);
+    bool write_exports(const std::vector<std::pair<std::string, ExportRecord>>& files);
     void ask_for_cfd();
     void say_what_is_stale();
     void save_session(bool elsewhere);

@@ -127,7 +127,15 @@ void MeasurementSheet::build_head(QFormLayout& form) {
     model_->setEditable(true);
     model_->setInsertPolicy(QComboBox::NoInsert);
     model_->setAccessibleName("Model that it is judged by");
-    model_->setToolTip("The residual is what is measured less what this model says");
+    model_->setToolTip(
+        "The residual is what is measured less what this model says. Under report/models stand the vehicles of the "
+        "stability maps with the study's force tables, as the last run wrote them");
+    for (const auto& one : desk_.session().study.regions) {  // the vehicle with the study's own forces comes first
+        const auto composed = desk_.session().folder / "report" / "models" / one.name / "model.toml";
+        if (!one.forces.empty() && std::filesystem::exists(composed)) {
+            model_->addItem(qt(composed.string()));
+        }
+    }
     std::set<std::string> models;
     for (const auto& one : desk_.session().study.measurements) {
         models.insert(one.model.string());

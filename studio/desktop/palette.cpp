@@ -45,6 +45,14 @@ std::vector<Entry> entries(Desk& desk, const QList<QAction*>& actions) {
     things("table", study.tables);
     things("region", study.regions);
     things("measurement", study.measurements);
+    for (const auto& parameter : geometry::parameter_names()) {
+        if (!parameter.unit.empty() && !shown_shape(desk.state(), desk.session()).empty()) {
+            all.push_back({qt(parameter.name), "number of the shape", [&desk, name = parameter.name] {
+                               desk.act({"workspace", "design"});
+                               Q_EMIT desk.sought(qt(name));
+                           }});
+        }
+    }
     for (const auto& kind : action_kinds()) {
         all.push_back({qt(kind.verb + " " + kind.arguments), qt(kind.meaning), {}});
     }
@@ -168,6 +176,9 @@ void show_keys(QWidget* parent, const QList<QAction*>& actions) {
             add(action->shortcut().toString(), plain(*action));
         }
     }
+    add("Arrows, Enter, + and −, Home", "in a plot: move a mark that reads the coordinates, click, zoom, show all");
+    add("Arrows, Delete", "in the lines of Explore: choose an axis, move the ends of its range, take it away");
+    add("Ctrl+Left, Ctrl+Right", "in the lines of Explore: move the axis");
     add("Wheel, drag, double click", "in a plot: zoom, move, show all");
     add("Left, middle, right button", "in 3D: turn, move, zoom; a click reads the value");
     table->resizeColumnToContents(0);

@@ -22,9 +22,10 @@ ParallelView::ParallelView(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
     setAccessibleName("Lines over all columns");
     setToolTip(
-        "Drag along an axis to keep a range; click on the axis to take it away.\nKeys: left and right choose an axis, "
-        "up "
-        "and down move the end of its range (with Shift the lower end), Delete takes it away.");
+        "Drag along an axis to keep a range; click on the axis to take it away. Drag its title to move the "
+        "axis.\nKeys: "
+        "left and right choose an axis (with Ctrl they move it), up and down move the end of its range (with Shift the "
+        "lower end), Delete takes it away.");
 }
 
 void ParallelView::say(const QString& text) {
@@ -33,9 +34,13 @@ void ParallelView::say(const QString& text) {
 }
 
 void ParallelView::show_axes(std::vector<Axis> axes) {
+    const std::string chosen = chosen_ < axes_.size() ? axes_[chosen_].name : std::string();
     axes_ = std::move(axes);
     pointed_out_.reset();
-    chosen_ = std::min(chosen_, axes_.empty() ? 0 : axes_.size() - 1);
+    carried_ = pressed_ = -1;
+    const auto same = std::find_if(axes_.begin(), axes_.end(), [&](const Axis& axis) { return axis.name == chosen; });
+    chosen_ = same != axes_.end() ? static_cast<std::size_t>(same - axes_.begin())
+                                  : std::min(chosen_, axes_.empty() ? 0 : axes_.size() - 1);
     setFocusPolicy(axes_.empty() ? Qt::NoFocus : Qt::StrongFocus);
     for (auto& axis : axes_) {
         axis.lower = INFINITY;
@@ -161,37 +166,54 @@ void ParallelView::paintEvent(QPaintEvent*) {
         draw_line(painter, *pointed_out_);
     }
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const Axis& axis = axes_[i];
-        const double x = x_of(i);
-        const bool chosen = hasFocus() && i == chosen_;
-        painter.setPen(chosen ? QPen(palette().highlight().color(), 3) : QPen(palette().text().color(), 1));
-        painter.drawLine(QPointF(x, head_), QPointF(x, height() - bottom));
-        painter.setPen(QPen(palette().text().color(), 1));
-        const double room = title_room();
-        painter.drawText(QRectF(x - room / 2, 2, room, head_ - 26),
-                         Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap, title_of(axis));
-        const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
-        painter.drawText(QRectF(x - 60, head_ - 22, 120, 18), Qt::AlignCenter, text(axis.upper));
-        painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));
-        std::array<double, 2> range{};
-        if (pressed_ == static_cast<int>(i)) {
-            range = {std::min(from_, to_), std::max(from_, to_)};
-        } else if (const auto at = brush_.find(axis.name); at != brush_.end()) {
-            range = at->second;
-        } else {
-            continue;
+        if (carried_ == static_cast<int>(i)) {
+            painter.setOpacity(0.35);
         }
-        const QRectF box(QPointF(x - 7, y_of(axis, std::min(range[1], axis.upper))),
-                         QPointF(x + 7, y_of(axis, std::max(range[0], axis.lower))));
-        QColor fill = palette().highlight().color();
-        fill.setAlpha(90);
-        painter.fillRect(box, fill);
-        painter.drawRect(box);
-        // The two numbers stand apart, however narrow the range.
-        const double apart = std::max(0.0, fontMetrics().height() - box.height()) / 2;
-        painter.drawText(QPointF(x + 10, box.top() + 4 - apart), text(range[1]));
-        painter.drawText(QPointF(x + 10, box.bottom() + 4 + apart), text(range[0]));
+        draw_axis(painter, i, x_of(i));
+        painter.setOpacity(1);
     }
+    if (carried_ >= 0) {
+        draw_axis(painter, static_cast<std::size_t>(carried_), carried_x_);
+        painter.setPen(QPen(palette().highlight().color(), 3));
+        const double x = x_of(place_at(carried_x_));
+        painter.drawLine(QPointF(x - 12, head_ - 2), QPointF(x + 12, head_ - 2));
+    }
+}
+
+std::array<double, 2> ParallelView::range_of(std::size_t axis) const {
+    if (pressed_ == static_cast<int>(axis)) {
+        return {std::min(from_, to_), std::max(from_, to_)};
+    }
+    const auto at = brush_.find(axes_[axis].name);
+    return at != brush_.end() ? at->second : std::array<double, 2>{NAN, NAN};
+}
+
+void ParallelView::draw_axis(QPainter& painter, std::size_t index, double x) const {
+    const Axis& axis = axes_[index];
+    const bool strong = (hasFocus() && index == chosen_) || carried_ == static_cast<int>(index);
+    painter.setPen(strong ? QPen(palette().highlight().color(), 3) : QPen(palette().text().color(), 1));
+    painter.drawLine(QPointF(x, head_), QPointF(x, height() - bottom));
+    painter.setPen(QPen(palette().text().color(), 1));
+    const double room = title_room();
+    painter.drawText(QRectF(x - room / 2, 2, room, head_ - 26), Qt::AlignHCenter | Qt::AlignBottom | Qt::TextWordWrap,
+                     title_of(axis));
+    const auto text = [&](double value) { return qt(core::format_number(axis.factor * value, 4)); };
+    painter.drawText(QRectF(x - 60, head_ - 22, 120, 18), Qt::AlignCenter, text(axis.upper));
+    painter.drawText(QRectF(x - 60, height() - bottom + 2, 120, 18), Qt::AlignCenter, text(axis.lower));
+    const std::array<double, 2> range = range_of(index);
+    if (std::isnan(range[0])) {
+        return;
+    }
+    const QRectF box(QPointF(x - 7, y_of(axis, std::min(range[1], axis.upper))),
+                     QPointF(x + 7, y_of(axis, std::max(range[0], axis.lower))));
+    QColor fill = palette().highlight().color();
+    fill.setAlpha(90);
+    painter.fillRect(box, fill);
+    painter.drawRect(box);
+    // The two numbers stand apart, however narrow the range.
+    const double apart = std::max(0.0, fontMetrics().height() - box.height()) / 2;
+    painter.drawText(QPointF(x + 10, box.top() + 4 - apart), text(range[1]));
+    painter.drawText(QPointF(x + 10, box.bottom() + 4 + apart), text(range[0]));
 }
 
 void ParallelView::resizeEvent(QResizeEvent*) {
@@ -234,11 +256,38 @@ void ParallelView::move_end(bool upper, int by) {
     }
 }
 
+std::size_t ParallelView::place_at(double x) const {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < axes_.size(); ++i) {
+        nearest = std::abs(x_of(i) - x) < std::abs(x_of(nearest) - x) ? i : nearest;
+    }
+    return nearest;
+}
+
+void ParallelView::move_axis(std::size_t from, std::size_t to) {
+    if (from == to) {
+        return;
+    }
+    QStringList names;
+    for (const auto& axis : axes_) {
+        names << qt(axis.name);
+    }
+    names.move(static_cast<int>(from), static_cast<int>(to));
+    chosen_ = from;  // follows its axis when they are shown
+    Q_EMIT reordered(names);
+}
+
 void ParallelView::keyPressEvent(QKeyEvent* event) {
     const bool shift = (event->modifiers() & Qt::ShiftModifier) != 0;
-    const int key =
-        axes_.empty() || (event->modifiers() & (Qt::ControlModifier | Qt::AltModifier)) != 0 ? 0 : event->key();
-    if (key == Qt::Key_Left || key == Qt::Key_Right) {
+    const bool control = (event->modifiers() & Qt::ControlModifier) != 0;
+    const bool sideways = event->key() == Qt::Key_Left || event->key() == Qt::Key_Right;
+    const bool own = !axes_.empty() && (event->modifiers() & Qt::AltModifier) == 0 && (!control || sideways);
+    const int key = own ? event->key() : 0;
+    if (control && key == Qt::Key_Left) {
+        move_axis(chosen_, chosen_ - (chosen_ > 0 ? 1 : 0));
+    } else if (control && key == Qt::Key_Right) {
+        move_axis(chosen_, std::min(chosen_ + 1, axes_.size() - 1));
+    } else if (key == Qt::Key_Left || key == Qt::Key_Right) {
         chosen_ = key == Qt::Key_Right ? std::min(chosen_ + 1, axes_.size() - 1) : chosen_ - (chosen_ > 0 ? 1 : 0);
         update();
     } else if (key == Qt::Key_Up || key == Qt::Key_Down) {
@@ -251,24 +300,46 @@ void ParallelView::keyPressEvent(QKeyEvent* event) {
 }
 
 void ParallelView::mousePressEvent(QMouseEvent* event) {
-    pressed_ = -1;
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-        if (std::abs(event->pos().x() - x_of(i)) < 14) {
-            pressed_ = static_cast<int>(i);
-            from_ = to_ = value_at(axes_[i], event->pos().y());
-        }
+    pressed_ = carried_ = -1;
+    if (axes_.empty() || event->button() != Qt::LeftButton) {
+        return;
+    }
+    const std::size_t nearest = place_at(event->pos().x());
+    const double off = std::abs(event->pos().x() - x_of(nearest));
+    if (event->pos().y() < head_ - 22 && off < title_room() / 2) {  // on its title
+        carried_ = static_cast<int>(nearest);
+        carried_x_ = event->pos().x();
+        chosen_ = nearest;
+    } else if (off < 14) {
+        pressed_ = static_cast<int>(nearest);
+        from_ = to_ = value_at(axes_[nearest], event->pos().y());
     }
     update();
 }
 
 void ParallelView::mouseMoveEvent(QMouseEvent* event) {
-    if (pressed_ >= 0 && (event->buttons() & Qt::LeftButton) != 0) {
+    const bool held = (event->buttons() & Qt::LeftButton) != 0;
+    if (pressed_ >= 0 && held) {
         to_ = value_at(axes_[static_cast<std::size_t>(pressed_)], event->pos().y());
         update();
+    } else if (carried_ >= 0 && held) {
+        carried_x_ = event->pos().x();
+        update();
+    } else if (!axes_.empty()) {
+        const double off = std::abs(event->pos().x() - x_of(place_at(event->pos().x())));
+        const bool title = event->pos().y() < head_ - 22 && off < title_room() / 2;
+        setCursor(title ? Qt::OpenHandCursor : Qt::ArrowCursor);
     }
 }
 
 void ParallelView::mouseReleaseEvent(QMouseEvent*) {
+    if (carried_ >= 0) {
+        const auto from = static_cast<std::size_t>(carried_);
+        carried_ = -1;
+        update();
+        move_axis(from, place_at(carried_x_));
+        return;
+    }
     if (pressed_ < 0) {
         return;
     }

@@ -1,5 +1,6 @@
-// Parallel coordinates: one axis a column, one line a case, ranges dragged on the axes. By keyboard: left and right
-// choose an axis, up and down move the upper end of its range, with Shift the lower one, Delete takes it away.
+// Parallel coordinates: one axis a column, one line a case, ranges dragged on the axes, axes dragged by their titles.
+// By keyboard: left and right choose an axis, with Ctrl they move it; up and down move the upper end of its range, with
+// Shift the lower one, Delete takes it away.
 #pragma once
 
 #include <QPixmap>
@@ -31,6 +32,8 @@ public:
                     const std::vector<std::size_t>& marked = {});
     /// The line of a row, drawn over all others; none: none.
     void point_out(std::optional<std::size_t> row);
+    /// As they stand, from the left.
+    [[nodiscard]] const std::vector<Axis>& axes() const { return axes_; }
     [[nodiscard]] std::optional<std::size_t> pointed_out() const { return pointed_out_; }
     /// What stands there while there is nothing to show.
     void say(const QString& text);
@@ -44,6 +47,8 @@ public:
 Q_SIGNALS:
     /// A range was dragged on an axis; lower == upper: cleared by a click.
     void brushed(const QString& column, double lower, double upper);
+    /// An axis is to stand elsewhere: all of them from the left.
+    void reordered(const QStringList& columns);
 
 protected:
     void paintEvent(QPaintEvent* event) override;
@@ -58,6 +63,11 @@ private:
     [[nodiscard]] double y_of(const Axis& axis, double value) const;
     [[nodiscard]] double value_at(const Axis& axis, double y) const;
     void move_end(bool upper, int by);
+    void move_axis(std::size_t from, std::size_t to);
+    void draw_axis(QPainter& painter, std::size_t axis, double x) const;
+    /// The place among the axes that is nearest to x.
+    [[nodiscard]] std::size_t place_at(double x) const;
+    [[nodiscard]] std::array<double, 2> range_of(std::size_t axis) const;
     void draw_line(QPainter& painter, std::size_t row) const;
     void draw_layers();
     [[nodiscard]] static QString title_of(const Axis& axis);
@@ -75,6 +85,8 @@ private:
     int pressed_ = -1;
     std::size_t chosen_ = 0;  ///< axis that keys act on
     double from_ = 0, to_ = 0;
+    int carried_ = -1;  ///< axis whose title is dragged
+    double carried_x_ = 0;
 };
 
 }  // namespace underbody::studio

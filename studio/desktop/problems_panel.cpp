@@ -9,6 +9,7 @@
 #include <QRegularExpression>
 #include <QStyle>
 #include <QTime>
+#include <QTimer>
 #include <QToolButton>
 #include <algorithm>
 #include <filesystem>
@@ -141,7 +142,7 @@ QString ProblemList::text() const {
 
 Banner::Banner(QWidget* parent) : QFrame(parent) {
     setObjectName("banner");
-    setStyleSheet("QFrame#banner { border: 2px solid #d55e00; border-radius: 4px; }");
+    setStyleSheet("QFrame#banner { border: 2px solid #d55e00; border-radius: 4px; background: palette(window); }");
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(10, 6, 6, 6);
     auto* icon = new QLabel;
@@ -158,7 +159,39 @@ Banner::Banner(QWidget* parent) : QFrame(parent) {
     close->setToolTip("Close this message (it stays in the list of problems)");
     connect(close, &QToolButton::clicked, this, &QWidget::hide);
     row->addWidget(close, 0, Qt::AlignTop);
+    taken_ = new QTimer(this);
+    taken_->setSingleShot(true);
+    taken_->setInterval(500);
+    connect(taken_, &QTimer::timeout, this, [this] { setAttribute(Qt::WA_TransparentForMouseEvents, false); });
+    parent->installEventFilter(this);
     hide();
+}
+
+bool Banner::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::Resize && isVisible()) {
+        lay();
+    }
+    return QFrame::eventFilter(watched, event);
+}
+
+void Banner::lay() {
+    constexpr int widest = 760, apart = 10;  // px
+    const QRect room = parentWidget()->rect().adjusted(apart, apart, -apart, -apart);
+    const int wide = std::min(room.width(), widest);
+    const int high = std::min(
+        room.height(), layout()->hasHeightForWidth() ? layout()->totalHeightForWidth(wide) : sizeHint().height());
+    setGeometry(room.center().x() - wide / 2, room.bottom() - high, wide, high);
+    raise();
+}
+
+void Banner::appear(const QString& text) {
+    text_->setText(text);
+    if (!isVisible()) {
+        setAttribute(Qt::WA_TransparentForMouseEvents, true);
+        taken_->start();
+    }
+    show();
+    lay();
 }
 
 void Banner::show_error(const QString& what, const QString& message, const QString& hint) {
@@ -166,14 +199,10 @@ void Banner::show_error(const QString& what, const QString& message, const QStri
     if (!hint.isEmpty()) {
         text += "<br><i>" + hint.toHtmlEscaped() + "</i>";
     }
-    text_->setText(text);
-    show();
+    appear(text);
 }
 
-void Banner::show_note(const QString& text) {
-    text_->setText(text.toHtmlEscaped());
-    show();
-}
+void Banner::show_note(const QString& text) { appear(text.toHtmlEscaped()); }
 
 Told tell(const std::exception_ptr& error) {
     Told told;

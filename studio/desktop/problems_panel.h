@@ -8,6 +8,7 @@
 #include "core/error.h"
 
 class QLabel;
+class QTimer;
 
 namespace underbody::studio {
 
@@ -33,7 +34,8 @@ private:
     int count_ = 0;
 };
 
-/// A message with its hint above the panels, until it is closed or something succeeds.
+/// A message with its hint over the lower end of its parent, until it is closed or something succeeds. It lies over
+/// what is there, so that nothing moves, and lets a click that is on its way fall through.
 class Banner : public QFrame {
     Q_OBJECT
 public:
@@ -41,8 +43,14 @@ public:
     void show_error(const QString& what, const QString& message, const QString& hint);
     void show_note(const QString& text);
 
+protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
 private:
+    void appear(const QString& text);
+    void lay();
     QLabel* text_ = nullptr;
+    QTimer* taken_ = nullptr;  ///< runs out when clicks are its own
 };
 
 /// Message and hint of any exception.

@@ -64,36 +64,33 @@ void add_operation(const State& state, Words& words) {
     }
 }
 
-/// Of the table as `study run` writes it.
+/// Of the tables as `study run` writes them; what must be done before is done once.
 std::string export_command(const State& state, const Session& session, const Words& words) {
-    const auto at = state.exports.find(words.at(1));
-    if (at == state.exports.end()) {
-        return {};
+    Words lines, remarks;
+    const auto add = [](Words& to, const std::string& line) {
+        if (!line.empty() && std::find(to.begin(), to.end(), line) == to.end()) {
+            to.push_back(line);
+        }
+    };
+    for (const auto& one : split_exports(Words(words.begin() + 1, words.end()))) {
+        const auto at = state.exports.find(std::filesystem::absolute(one.at(0)).lexically_normal().string());
+        const auto* spec = session.study.find_table(one.at(1));
+        if (at == state.exports.end() || spec == nullptr) {
+            return {};
+        }
+        const TableOfStudy table = table_of_study(session, spec->name);
+        add(lines, table.first);
+        add(lines, line_of(table.command(spec->quantity, one.at(0), at->second)));
+        add(remarks, table.before);
     }
-    const ExportRecord& record = at->second;
-    const TableOfStudy table = table_of_study(session, record.table);
-    if (table.name.empty()) {
-        return {};
+    std::string line;
+    for (const auto& one : lines) {
+        line += (line.empty() ? "" : " && ") + one;
     }
-    Words line = {"underbody", "export", table.file, "--format", record.format,
-                  "--out",     words[1], "--name",   record.name};
-    if (record.frame != "up") {
-        line.insert(line.end(), {"--frame", record.frame});
+    for (const auto& one : remarks) {
+        line += (&one == &remarks.front() ? "  # " : "; ") + one;
     }
-    if (record.number != "double") {
-        line.insert(line.end(), {"--number", record.number});
-    }
-    if (record.max_error) {
-        line.insert(line.end(), {"--max-error", core::format_number(100 * *record.max_error) + "%"});
-    }
-    std::string range;
-    for (const auto& [axis, policy] : record.range) {
-        range += (range.empty() ? "" : ",") + axis + "=" + policy;
-    }
-    if (!range.empty()) {
-        line.insert(line.end(), {"--range", range});
-    }
-    return table.line(line);
+    return line;
 }
 
 std::string table_command(const State& state, const Words& words) {
@@ -298,7 +295,9 @@ std::string name_of(const Words& words) {
         return "take in " + first;
     }
     if (verb == "exported") {
-        return "export " + first.substr(first.rfind('/') + 1);
+        const auto count = split_exports(words).size();
+        return "export " + first.substr(first.rfind('/') + 1) +
+               (count > 1 ? " and " + std::to_string(count - 1) + " more" : "");
     }
     if (verb == "session") {
         return "open a study as it was left";
@@ -308,6 +307,9 @@ std::string name_of(const Words& words) {
     }
     if (verb == "turn") {
         return "turn the view of " + first;
+    }
+    if (verb == "order") {
+        return words.size() > 1 ? "order of the axes" : "axes as the table has them";
     }
     if (verb == "pin") {
         return "compare with this";

@@ -38,6 +38,7 @@ State measure(State state, const Words& words, const Session& session);
 State look_at_table(State state, const Words& words, const Session& session);
 State look_at_region(State state, const Words& words, const Session& session);
 State explore_axes(State state, const Words& words, const Session& session);
+State order(State state, const Words& words, const Session& session);
 State brush(State state, const Words& words, const Session& session);
 State vary(State state, const Words& words, const Session& session);
 State rows(State state, const Words& words, const Session& session);

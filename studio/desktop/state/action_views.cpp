@@ -202,6 +202,17 @@ State brush(State state, const Words& words, const Session& session) {
     return state;
 }
 
+State order(State state, const Words& words, const Session& session) {
+    for (const auto& column : words) {
+        need_column(session, column);
+        if (std::count(words.begin(), words.end(), column) > 1) {
+            throw UsageError("words", "the axis '" + column + "' is named twice", {}, "name it once");
+        }
+    }
+    state.explore.order = words;
+    return state;
+}
+
 State vary(State state, const Words& words, const Session& session) {
     need(words, 0, 12, "vary PARAMETER=FROM:TO:COUNT ...");
     std::vector<geometry::Vary> varied;

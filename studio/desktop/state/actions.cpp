@@ -9,9 +9,9 @@
 #include "core/units.h"
 #include "geometry/body/variants.h"
 #include "studio/desktop/state/action_parts.h"
+#include "studio/desktop/state/exports.h"
 #include "studio/desktop/state/known_things.h"
 #include "studio/desktop/state/session_file.h"
-#include "surrogates/tables/exports/export.h"
 #include "surrogates/tables/points/range_policy.h"
 
 namespace underbody::studio {
@@ -308,15 +308,14 @@ void check_export(const State& state, const Session& session, const ExportRecord
     }
 }
 
-State exported(State state, const Words& words, const Session& session) {
-    need(words, 2, 100, "exported FILE TABLE KEY=VALUE ...");
+/// One file: FILE TABLE KEY=VALUE ...
+void remember_export(State& state, const Words& words, const Session& session) {
+    need(words, 2, 100, "exported FILE TABLE KEY=VALUE ... [and FILE TABLE KEY=VALUE ...]");
     ExportRecord record;
     record.table = words[1];
-    const std::map<std::string, std::string*> texts = {{"made_of", &record.made_of},
-                                                       {"format", &record.format},
-                                                       {"name", &record.name},
-                                                       {"frame", &record.frame},
-                                                       {"number", &record.number}};
+    const std::map<std::string, std::string*> texts = {{"made_of", &record.made_of}, {"written", &record.written},
+                                                       {"format", &record.format},   {"name", &record.name},
+                                                       {"frame", &record.frame},     {"number", &record.number}};
     for (std::size_t i = 2; i < words.size(); ++i) {
         const auto [key, text] = assignment(words[i]);
         if (const auto known = texts.find(key); known != texts.end()) {
@@ -326,11 +325,17 @@ State exported(State state, const Words& words, const Session& session) {
         } else if (key.starts_with("range.")) {
             record.range[key.substr(6)] = text;
         } else {
-            unknown_key(key, {"made_of", "format", "name", "frame", "number", "max_error", "range.AXIS"});
+            unknown_key(key, {"made_of", "written", "format", "name", "frame", "number", "max_error", "range.AXIS"});
         }
     }
     check_export(state, session, record);
     state.exports[whole_path(words[0])] = record;
+}
+
+State exported(State state, const Words& words, const Session& session) {
+    for (const auto& one : split_exports(words)) {
+        remember_export(state, one, session);
+    }
     return state;
 }
 
@@ -374,11 +379,13 @@ const std::vector<ActionKind>& action_kinds() {
         {"accept", "MEASUREMENT", "the model that was found counts as the declared one", "accept 'heave test'", false,
          accept},
         {"unaccept", "MEASUREMENT", "the declared model counts again", "unaccept 'heave test'", false, unaccept},
-        {"exported", "FILE TABLE KEY=VALUE ...", "remembers a file that was exported, and how",
+        {"exported", "FILE TABLE KEY=VALUE ... [and ...]", "remembers files that were exported, and how",
          "exported lift.h lift format=c", false, exported},
         {"axes", "X Y", "chooses what the scatter plot shows", "axes gap lift_force", true, action::explore_axes},
         {"brush", "COLUMN=LOW:HIGH|VALUE ...", "keeps cases within ranges, or at a value; no range: all",
          "brush gap=2mm:5mm", true, action::brush},
+        {"order", "[COLUMN ...]", "puts axes of the lines in this order, from the left; none: as the table has them",
+         "order lift_force gap", true, action::order},
         {"vary", "PARAMETER=FROM:TO:COUNT ...", "makes the shapes between; no parameter: none",
          "vary protrusion.height=1mm:3mm:5", false, action::vary},
         {"rows", "cases|shapes", "explores the cases of the study or the shapes that vary", "rows cases", true,

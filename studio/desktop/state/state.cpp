@@ -225,6 +225,7 @@ void fields(auto& v, const RegionView& /*kind*/, const auto& field) {
 void fields(auto& v, const ExportRecord& /*kind*/, const auto& field) {
     field("table", v.table);
     field("made_of", v.made_of);
+    field("written", v.written);
     field("format", v.format);
     field("name", v.name);
     field("frame", v.frame);
@@ -244,6 +245,7 @@ void fields(auto& v, const ExploreView& /*kind*/, const auto& field) {
     field("x", v.x);
     field("y", v.y);
     field("brush", v.brush);
+    field("order", v.order);
     field("shapes", v.shapes);
     field("pictures", v.pictures);
     field("picture", v.picture);

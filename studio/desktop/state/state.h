@@ -94,6 +94,7 @@ struct ExploreView {
     std::string x = "gap";
     std::string y = "lift_force";
     std::map<std::string, std::array<double, 2>> brush;  ///< column -> kept range, SI
+    std::vector<std::string> order;                      ///< axes of the lines from the left; the others follow
     std::vector<geometry::Vary> vary;                    ///< of the shape that Design shows
     bool shapes = false;                                 ///< these shapes are explored, not the cases
     bool pictures = false;                               ///< in front of the points
@@ -120,6 +121,7 @@ struct DesignView {
 struct ExportRecord {
     std::string table;    ///< [[table]] of the study
     std::string made_of;  ///< table_digest when it was written
+    std::string written;  ///< hash of the file as it was written; empty: not known
     std::string format = "c", name, frame = "up", number = "double";
     std::optional<double> max_error;           ///< share of the range
     std::map<std::string, std::string> range;  ///< axis -> policy beyond its ends

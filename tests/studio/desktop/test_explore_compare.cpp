@@ -420,6 +420,12 @@ TEST_F(Window, AStaleExportIsSaidAndMadeAgain) {
     EXPECT_TRUE(said);
     window_->export_stale();
     settle(*window_);
+    EXPECT_EQ(asked_, 1) << "it is not what the window wrote";
+    EXPECT_EQ(core::read_file(file), "the old one");
+    answer_ = true;
+    window_->export_stale();
+    settle(*window_);
+    EXPECT_EQ(window_->desk().history().steps().back().name, "export lift.h");
     EXPECT_NE(core::read_file(file).find("#ifndef"), std::string::npos);
     EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
 }

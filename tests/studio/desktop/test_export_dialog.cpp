@@ -6,10 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include <QAction>
 #include <QLabel>
 #include <QLineEdit>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSignalSpy>
 #include <QTest>
 #include <algorithm>
+#include <map>
 
 #include "core/file.h"
 #include "studio/desktop/export_dialog.h"
@@ -34,7 +39,7 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     open(computed_study());
     act("workspace tables");
     settle(*window_);
-    ExportDialog* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+    ExportDialog* dialog = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get(),
                                             table_of_study(window_->desk().session(), "lift"));
     settle(*window_);
     const QString study = QString::fromStdString(computed_study().string());
@@ -52,7 +57,9 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     dialog->prove();
     settle(*window_);
     EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();
+    EXPECT_TRUE(dialog->proof().contains("10,000 points")) << dialog->proof().toStdString();
     dialog->write(folder_.path() / "lift.h");
+    settle(*window_);
     EXPECT_EQ(core::read_file(folder_.path() / "lift.h").substr(0, 40), dialog->preview().toStdString().substr(0, 40));
     delete dialog;
 }
@@ -82,7 +89,7 @@ TEST_F(Window, AnExportOfAStudysTableIsTheStudys) {
     act("workspace tables");
     settle(*window_);
     const auto dialog_of = [&] {
-        return new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get(),
+        return new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get(),
                                 table_of_study(window_->desk().session(), "lift"));
     };
     auto* dialog = dialog_of();
@@ -92,6 +99,7 @@ TEST_F(Window, AnExportOfAStudysTableIsTheStudys) {
     carry_out(dialog->command(by_command));
     EXPECT_TRUE(fs::exists(by_command.toStdString()));
     dialog->write(by_window);
+    settle(*window_);
     delete dialog;
     dialog = dialog_of();
     EXPECT_TRUE(dialog->command(by_command).startsWith("underbody export ")) << "they are there now";
@@ -109,7 +117,7 @@ TEST_F(Window, TheExportDialogSaysWhatIsWrong) {
     open(computed_study());
     act("workspace tables");
     settle(*window_);
-    auto* dialog = new ExportDialog(window_->jobs(), {panel<ForcePanel>().table()}, window_.get());
+    auto* dialog = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get());
     settle(*window_);
     allow_error(*dialog, "0,5");
     settle(*window_);
@@ -122,6 +130,124 @@ TEST_F(Window, TheExportDialogSaysWhatIsWrong) {
     EXPECT_TRUE(dialog->proof().startsWith("Not written")) << dialog->proof().toStdString();
     EXPECT_TRUE(window_->last_error().isEmpty()) << window_->last_error().toStdString();
     delete dialog;
+}
+
+// It runs beside the window, says how far it is, and the same button stops it.
+TEST_F(Window, AProofIsStoppedByItsButton) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    auto* dialog = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get());
+    dialog->show();
+    settle(*window_);
+    QPushButton* prove = nullptr;
+    for (auto* button : dialog->findChildren<QPushButton*>()) {
+        prove = button->text().contains("rove") ? button : prove;
+    }
+    ASSERT_NE(prove, nullptr);
+    QSignalSpy said(dialog, &ExportDialog::proved);
+    prove->click();
+    auto* bar = dialog->findChild<QProgressBar*>();
+    ASSERT_NE(bar, nullptr);
+    EXPECT_TRUE(bar->isVisible());
+    EXPECT_TRUE(prove->text().contains("Sto")) << prove->text().toStdString();
+    QTest::qWait(30);
+    prove->click();
+    EXPECT_FALSE(bar->isVisible());
+    EXPECT_EQ(dialog->proof(), "Not proved: stopped");
+    settle(*window_);
+    EXPECT_EQ(said.count(), 0);
+    EXPECT_TRUE(prove->text().contains("Prove"));
+    prove->click();
+    settle(*window_);
+    EXPECT_EQ(said.count(), 1);
+    EXPECT_TRUE(said[0][0].toBool()) << dialog->proof().toStdString();
+    delete dialog;
+}
+
+/// The study with a second table, and how both are exported.
+fs::path with_drag(const fs::path& study) {
+    std::string text = core::read_file(study / "study.toml");
+    text.insert(text.find("[[region]]"),
+                "[[table]]\nname = \"drag, level\"\nquantity = \"drag_force\"\naxes = [\"gap\"]\n"
+                "where = { variant = \"ellipse\", pitch = 0, speed = \"0.5 m/s\" }\nexports = [\"csv\"]\n\n");
+    text.insert(text.find("net_weight"), "exports = [\"csv\"]\n");
+    core::write_file(study / "study.toml", text);
+    return study;
+}
+
+// All marked tables are one action: one question, one step, one line.
+TEST_F(Window, AllMarkedTablesAreWritten) {
+    const fs::path study = with_drag(copy_of_study()), out = folder_.path() / "out";
+    fs::create_directories(out);
+    open(study);
+    act("workspace tables");
+    act("select table/lift");
+    act("star 'table/drag, level'");
+    settle(*window_);
+    for (auto* action : window_->actions()) {
+        if (action->shortcut() == QKeySequence("Ctrl+E")) {
+            action->trigger();
+        }
+    }
+    settle(*window_);
+    auto* dialog = window_->findChild<ExportDialog*>();
+    ASSERT_NE(dialog, nullptr) << window_->last_error().toStdString();
+    const auto button = [&] {
+        for (auto* one : dialog->findChildren<QPushButton*>()) {
+            if (one->text().contains("marked")) {
+                return one;
+            }
+        }
+        return static_cast<QPushButton*>(nullptr);
+    };
+    ASSERT_NE(button(), nullptr);
+    EXPECT_EQ(button()->text().toStdString(), "Write &all 2 marked …");
+    const ExportRecord how = dialog->record();
+    delete dialog;
+    const auto steps = window_->desk().history().steps().size();
+    core::write_file(out / "lift.h", "somebody's own\n");
+    EXPECT_FALSE(window_->write_marked(how, out));
+    EXPECT_EQ(asked_, 1);
+    EXPECT_EQ(core::read_file(out / "lift.h"), "somebody's own\n") << "never replaced unasked";
+    EXPECT_FALSE(fs::exists(out / "drag__level.h"));
+    answer_ = true;
+    EXPECT_TRUE(window_->write_marked(how, out));
+    settle(*window_);
+    const auto& history = window_->desk().history();
+    ASSERT_EQ(history.steps().size(), steps + 1) << window_->last_error().toStdString();
+    EXPECT_EQ(history.steps().back().name, "export lift.h and 1 more");
+    const auto& exports = window_->desk().state().exports;
+    ASSERT_EQ(exports.size(), 2U);
+    std::vector<std::string> files;
+    for (const auto& [file, record] : exports) {
+        files.push_back(file);
+        EXPECT_NE(core::read_file(file).find("#ifndef"), std::string::npos) << file;
+    }
+    EXPECT_TRUE(foreign_files(window_->desk().state(), files).empty());
+    EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
+    window_->desk().undo();
+    EXPECT_TRUE(window_->desk().state().exports.empty()) << "one step";
+    window_->desk().redo();
+    EXPECT_EQ(window_->desk().state().exports.size(), 2U);
+    EXPECT_TRUE(window_->write_marked(how, out));
+    settle(*window_);
+    EXPECT_EQ(asked_, 2) << "its own files are not asked for";
+    // The line does the same.
+    const QString command = QString::fromStdString(history.steps().back().command);
+    EXPECT_EQ(command.count("underbody export "), 2) << command.toStdString();
+    EXPECT_EQ(command.count("study run"), 1) << command.toStdString();
+    std::map<std::string, std::string> texts;
+    for (const auto& file : files) {
+        texts[file] = core::read_file(file);
+        fs::remove(file);
+    }
+    carry_out(command.section("  # ", 0, 0));
+    const auto numbers = [](const std::string& text) { return text.substr(text.find("#ifndef")); };
+    for (const auto& file : files) {
+        ASSERT_TRUE(fs::exists(file)) << command.toStdString();
+        EXPECT_EQ(numbers(core::read_file(file)), numbers(texts[file])) << file;
+    }
 }
 
 }  // namespace

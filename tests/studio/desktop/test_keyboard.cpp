@@ -10,12 +10,14 @@
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLineEdit>
+#include <QMouseEvent>
 #include <QSignalSpy>
 #include <QSlider>
 #include <QTabBar>
 #include <QTableWidget>
 #include <QTest>
 #include <QToolBar>
+#include <algorithm>
 #include <set>
 
 #include "studio/desktop/design_panel.h"
@@ -67,6 +69,14 @@ std::string name_of(const QWidget* widget) {
         .toStdString();
 }
 
+/// Where the keyboard is, is seen: in the window, and with a ring about it.
+void expect_seen(const QMainWindow& window, const QWidget& widget) {
+    EXPECT_FALSE(widget.visibleRegion().isEmpty()) << name_of(&widget) << " has the keyboard and is not seen";
+    const auto* ring = widget.findChild<QWidget*>("focus ring", Qt::FindDirectChildrenOnly);
+    EXPECT_TRUE(ring != nullptr && ring->isVisible()) << name_of(&widget) << " has no ring";
+    EXPECT_EQ(window.findChildren<QWidget*>("focus ring").size(), 1) << "one alone";
+}
+
 /// The widgets that Tab (or Shift+Tab) comes to until one comes again.
 std::vector<QWidget*> walk(QMainWindow& window, Qt::KeyboardModifiers modifiers) {
     std::vector<QWidget*> way;
@@ -82,10 +92,37 @@ std::vector<QWidget*> walk(QMainWindow& window, Qt::KeyboardModifiers modifiers)
                 << "stuck at " << name_of(now) << " after " << way.size() << " steps";
             return way;
         }
+        expect_seen(window, *now);
         way.push_back(now);
     }
     ADD_FAILURE() << "Tab comes round to no widget again";
     return way;
+}
+
+/// The study on the left, the workspace, or what stands below.
+const QWidget* area_of(const QWidget* widget) {
+    for (const QWidget* one = widget; one != nullptr; one = one->parentWidget()) {
+        if (one->inherits("QDockWidget") || qobject_cast<const Panel*>(one) != nullptr) {
+            return one;
+        }
+    }
+    return nullptr;
+}
+
+/// Each area is gone through before the next one.
+void expect_areas_together(const std::vector<QWidget*>& way) {
+    std::set<const QWidget*> areas;
+    std::size_t changes = 0;
+    for (std::size_t i = 0; i < way.size(); ++i) {
+        const auto *here = area_of(way[i]), *next = area_of(way[(i + 1) % way.size()]);
+        areas.insert(here);
+        changes += here != next ? 1 : 0;
+    }
+    std::string text;
+    for (const auto* one : way) {
+        text += "\n  " + name_of(one);
+    }
+    EXPECT_LE(changes, areas.size()) << "Tab jumps between the parts of the window:" << text;
 }
 
 TEST_F(Window, EveryInputIsReachedByTab) {
@@ -99,6 +136,7 @@ TEST_F(Window, EveryInputIsReachedByTab) {
             const std::vector<QWidget*> way = walk(*window_, modifiers);
             settle(*window_);
             EXPECT_GE(way.size(), 5U);
+            expect_areas_together(way);
             for (auto* widget : window_->findChildren<QWidget*>()) {
                 if (!is_input(*widget)) {
                     continue;
@@ -135,7 +173,8 @@ TEST_F(Window, EveryPlotAndTableIsCopied) {
     act("workspace design");
     settle(*window_);
     auto* card = panel<DesignPanel>().card();
-    card->selectRow(1);
+    card->selectionModel()->select(card->model()->index(1, 0),  // whatever key was pressed last
+                                   QItemSelectionModel::ClearAndSelect | QItemSelectionModel::Rows);
     QTest::keySequence(card, QKeySequence::Copy);
     const QStringList rows = QApplication::clipboard()->text().split('\n', Qt::SkipEmptyParts);
     ASSERT_EQ(rows.size(), 2) << QApplication::clipboard()->text().toStdString();
@@ -186,6 +225,51 @@ TEST_F(Window, ARangeIsKeptByKeyboard) {
     QTest::keyClick(lines, Qt::Key_Delete);
     EXPECT_TRUE(window_->desk().state().explore.brush.empty());
     EXPECT_EQ(explore.kept().size(), 5U);
+}
+
+// Axes are moved by Ctrl with an arrow, and by dragging their titles.
+TEST_F(Window, AxesOfTheLinesAreReordered) {
+    open(computed_study());
+    act("workspace explore");
+    settle(*window_);
+    auto* lines = panel<ExplorePanel>().findChild<ParallelView*>();
+    const auto order = [&] { return window_->desk().state().explore.order; };
+    const auto names = [&] {
+        std::vector<std::string> all;
+        for (const auto& axis : lines->axes()) {
+            all.push_back(axis.name);
+        }
+        return all;
+    };
+    const std::vector<std::string> first = names();
+    ASSERT_GE(first.size(), 3U);
+    lines->setFocus();
+    QTest::keyClick(lines, Qt::Key_Right, Qt::ControlModifier);
+    ASSERT_EQ(order().size(), first.size());
+    EXPECT_EQ(names(), order());
+    EXPECT_EQ(names()[0], first[1]);
+    EXPECT_EQ(names()[1], first[0]);
+    QTest::keyClick(lines, Qt::Key_Down);
+    EXPECT_TRUE(window_->desk().state().explore.brush.contains(first[0])) << "keys stay with the axis that was moved";
+    window_->desk().undo();
+    window_->desk().undo();
+    EXPECT_EQ(names(), first);
+    window_->desk().redo();
+    EXPECT_EQ(names()[1], first[0]);
+    window_->desk().undo();
+    const auto at = [&](std::size_t axis) { return QPoint(static_cast<int>(lines->x_of(axis)), 10); };
+    QTest::mousePress(lines, Qt::LeftButton, {}, at(0));
+    QMouseEvent move(QEvent::MouseMove, at(2), Qt::LeftButton, Qt::LeftButton, {});
+    QApplication::sendEvent(lines, &move);
+    EXPECT_FALSE(lines->grab().isNull());
+    QTest::mouseRelease(lines, Qt::LeftButton, {}, at(2));
+    std::vector<std::string> wanted = first;
+    std::rotate(wanted.begin(), wanted.begin() + 1, wanted.begin() + 3);
+    EXPECT_EQ(names(), wanted);
+    EXPECT_EQ(window_->desk().history().steps().back().name, "order of the axes");
+    EXPECT_TRUE(window_->desk().state().explore.brush.empty()) << "a title is no range";
+    act("order");
+    EXPECT_EQ(names(), first);
 }
 
 }  // namespace

@@ -48,6 +48,16 @@ protected:
         EXPECT_NE(sheet, nullptr) << window_->last_error().toStdString();
         return sheet;
     }
+    /// By the vehicle alone: the tables of the map's vehicle, which is offered first, end below the gaps of the flight.
+    void judge_by_the_vehicle_alone(MeasurementSheet& sheet, const fs::path& study) {
+        for (auto* box : sheet.findChildren<QComboBox*>()) {
+            if (box->accessibleName() == "Model that it is judged by") {
+                EXPECT_EQ(box->currentText().toStdString(), (study / "report/models/glide/model.toml").string());
+                box->setEditText(QString::fromStdString((study / "glide.toml").string()));
+            }
+        }
+        settle(*window_);
+    }
 };
 
 // A log that is dropped becomes a data set and a measurement of the study; what is missing is asked.
@@ -58,6 +68,7 @@ TEST_F(Dropped, ALogIsJudged) {
     write_flight(log);
     auto* sheet = drop({log});
     ASSERT_NE(sheet, nullptr);
+    judge_by_the_vehicle_alone(*sheet, study);
     EXPECT_EQ(sheet->field_of("gap")->currentText(), "rng_cm") << "told from the heading";
     EXPECT_EQ(sheet->unit_of("gap")->currentText(), "cm");
     EXPECT_EQ(sheet->field_of("time")->currentText(), "t_ms");
@@ -110,6 +121,7 @@ TEST_F(Dropped, TakingInIsUndone) {
     const State state = window_->desk().state();
     auto* sheet = drop({folder_.path() / "flight.csv"});
     ASSERT_NE(sheet, nullptr);
+    judge_by_the_vehicle_alone(*sheet, study);
     sheet->accept();
     settle(*window_);
     const std::string written = core::read_file(study / "study.toml");

@@ -97,6 +97,37 @@ TEST_F(Window, AllOfTenThousandCasesAreChosenAtOnce) {
     }
 }
 
+// The limits of a shape's numbers are asked for beside the window, however many cases stand around it.
+TEST_F(Window, LimitsAreAskedForBesideTheWindow) {
+    const fs::path study = study_of(10000, folder_.path() / "study");
+    fs::create_directories(study / "shapes");
+    fs::copy_file(test::source_folder() / "cases" / "evie" / "shapes" / "ellipse.toml",
+                  study / "shapes" / "ellipse.toml");
+    core::write_file(study / "study.toml", core::read_file(study / "study.toml") +
+                                               "\n[[body]]\nname = \"ellipse\"\nshape = \"shapes/ellipse.toml\"\n");
+    open(study);
+    act("workspace design");
+    settle(*window_);
+    auto* fold = window_->findChild<QToolButton*>("fold protrusion");
+    ASSERT_NE(fold, nullptr);
+    double longest = 0;
+    for (int i = 0; i < 2; ++i) {  // each asks for them anew: other rows, another shape
+        const double before = thread_time();
+        if (i % 2 == 0) {
+            fold->click();
+        } else {
+            act("set 'body.length=" + std::to_string(195 + i) + " mm'");
+        }
+        longest = std::max(longest, thread_time() - before);
+        Heartbeat heartbeat;
+        settle(*window_);
+        longest = std::max(longest, heartbeat.longest());
+    }
+    std::printf("limits of a shape beside 10,000 cases: the loop waits %.1f ms of processor time at most\n",
+                1000 * longest);
+    EXPECT_LT(longest, 0.05);
+}
+
 // Lines of all cases are drawn once: a range that is dragged moves over them, and the table writes what is seen of it.
 TEST_F(Window, ARangeIsDraggedOverTenThousandLines) {
     ParallelView view(nullptr);

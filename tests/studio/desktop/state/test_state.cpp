@@ -102,9 +102,11 @@ std::vector<std::string> every_action() {
         "vary protrusion.height=1mm:3mm:3 body.base=ellipse,rectangle",
         "brush volume=2000cm^3:2300cm^3",
         "rows cases",
+        "order lift_force gap",
         "show pictures",
         "exported /tmp/lift.h lift made_of=abc format=c name=lift frame=ned number=float max_error=0.01 "
         "range.gap=clamp",
+        "exported /tmp/lift.h lift made_of=abc written=def format=c name=lift and /tmp/drag.h drag format=c name=drag",
         "measure tank model=" + (evie() / "heave" / "model.toml").string() + " data=" + (evie() / "heave").string() +
             " channel=gap=rng_cm:cm clock=t_ms:ms",
         "add field " + (elsewhere() / "a.csv").string(),
@@ -328,6 +330,10 @@ TEST(StudioActions, WrongOnesSayWhatIsRightAndChangeNothing) {
         {"axes gap lift_forc", "lift_force"},
         {"brush lift_forc=0:1", "lift_force"},
         {"brush lift_forc=", "lift_force"},
+        {"order lift_forc", "lift_force"},
+        {"order gap gap", "twice"},
+        {"exported /tmp/lift.h lift and /tmp/drag.h drg", "drag"},
+        {"exported /tmp/lift.h lift and", "exported FILE TABLE"},
         {"exported /tmp/lift.h lft", "lift"},
         {"exported /tmp/lift.h lift format=cc", "no format"},
         {"exported /tmp/lift.h lift frame=nde", "ned"},

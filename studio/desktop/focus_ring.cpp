@@ -1,0 +1,61 @@
+#include "studio/desktop/focus_ring.h"
+
+#include <QApplication>
+#include <QEvent>
+#include <QPainter>
+
+namespace underbody::studio {
+
+namespace {
+
+/// Lies over a widget, as large as it is, and leaves the mouse to it.
+class Ring : public QWidget {
+public:
+    explicit Ring(QWidget* around) : QWidget(around) {
+        setObjectName("focus ring");
+        setAttribute(Qt::WA_TransparentForMouseEvents);
+        setFocusPolicy(Qt::NoFocus);
+        setGeometry(around->rect());
+        raise();
+        show();
+    }
+
+protected:
+    void paintEvent(QPaintEvent*) override {
+        QPainter painter(this);
+        painter.setPen(QPen(palette().highlight().color(), 2));
+        painter.drawRect(rect().adjusted(1, 1, -1, -1));
+    }
+};
+
+}  // namespace
+
+FocusRing::FocusRing(QObject* parent) : QObject(parent) {
+    connect(qApp, &QApplication::focusChanged, this, [this](QWidget*, QWidget* now) { follow(now); });
+}
+
+QWidget* FocusRing::around() const { return ring_ ? ring_->parentWidget() : nullptr; }
+
+void FocusRing::follow(QWidget* widget) {
+    if (QWidget* before = around()) {
+        before->removeEventFilter(this);
+    }
+    delete ring_;
+    if (widget != nullptr && widget->window()->testAttribute(Qt::WA_KeyboardFocusChange)) {
+        ring_ = new Ring(widget);
+        widget->installEventFilter(this);
+    }
+}
+
+bool FocusRing::eventFilter(QObject* watched, QEvent* event) {
+    if (ring_ && watched == ring_->parentWidget()) {
+        if (event->type() == QEvent::Resize) {
+            ring_->resize(ring_->parentWidget()->size());
+        } else if (event->type() == QEvent::MouseButtonPress) {
+            ring_->hide();  // the mouse is used
+        }
+    }
+    return QObject::eventFilter(watched, event);
+}
+
+}  // namespace underbody::studio

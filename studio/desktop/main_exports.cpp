@@ -1,0 +1,256 @@
+// What the window writes: sessions, shapes, pictures, tables, files for controllers.
+#include <QApplication>
+#include <QClipboard>
+#include <QDateTime>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <algorithm>
+
+#include "cases/export_files.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "geometry/body/body_shape.h"
+#include "studio/desktop/export_dialog.h"
+#include "studio/desktop/force_panel.h"
+#include "studio/desktop/main_window.h"
+#include "studio/desktop/panel.h"
+#include "studio/desktop/problems_panel.h"
+#include "studio/desktop/qt_text.h"
+#include "studio/desktop/state/exports.h"
+
+namespace underbody::studio {
+
+namespace fs = std::filesystem;
+
+bool MainWindow::write_chosen(QString path, const QStringList& endings,
+                              const std::function<void(const fs::path&)>& write) {
+    if (path.isEmpty()) {
+        return false;
+    }
+    bool fits = endings.isEmpty();
+    for (const auto& ending : endings) {
+        fits = fits || path.endsWith(ending, Qt::CaseInsensitive);
+    }
+    path += fits ? QString() : endings.front();
+    const QFileInfo file(path);
+    if (file.exists() &&
+        !ask("Replace",
+             file.fileName() + " is there already, of " + file.lastModified().toString("yyyy-MM-dd HH:mm") + ".",
+             "Replace it")) {
+        return false;
+    }
+    bool written = false;
+    guarded("writing " + file.fileName(), [&] {
+        write(path.toStdString());
+        problems_->note("Wrote " + path);
+        written = true;
+    });
+    return written;
+}
+
+namespace {
+/// The dialog does not ask: `write_chosen` does, when the ending is known.
+QString ask_path(QWidget* parent, const QString& title, const QString& name, const QString& filter) {
+    return QFileDialog::getSaveFileName(parent, title, name, filter, nullptr, QFileDialog::DontConfirmOverwrite);
+}
+}  // namespace
+
+QString MainWindow::proposed_file(const QString& ending) const {
+    return qt(proposed_name(desk_->state(), desk_->session())) + ending;
+}
+
+void MainWindow::save_session(bool elsewhere) {
+    const QString path = elsewhere || session_file_.isEmpty()
+                             ? ask_path(this, "Save session", QFileInfo(qt(desk_->state().study)).fileName() + ".ubs",
+                                        "Sessions (*.ubs)")
+                             : session_file_;
+    const auto write = [&](const fs::path& file) {
+        desk_->save_session_file(file);
+        session_file_ = qt(file.string());
+    };
+    if (path == session_file_ && !path.isEmpty()) {
+        guarded("saving the session", [&] { write(path.toStdString()); });
+    } else {
+        write_chosen(path, {".ubs"}, write);
+    }
+}
+
+void MainWindow::save_shape() {
+    guarded("saving the shape", [&] {
+        const std::string shown = shown_shape(desk_->state(), desk_->session());
+        if (shown.empty()) {
+            throw core::InputError("missing", "there is no shape to save");
+        }
+        write_chosen(ask_path(this, "Save shape", qt(shown) + ".toml", "Shapes (*.toml)"), {".toml"},
+                     [&](const fs::path& path) { write_shown_shape(path); });
+    });
+}
+
+void MainWindow::write_shown_shape(const fs::path& path) {
+    const std::string shown = shown_shape(desk_->state(), desk_->session());
+    auto shape = shape_of(desk_->state(), desk_->session(), shown);
+    shape.name = path.stem().string();
+    core::write_file(path, geometry::write_shape(shape));
+    Words line = shape_command(desk_->state(), desk_->session(), shown);
+    line.insert(line.end(), {"--as", path.string()});
+    problems_->note("The same: " + qt(line_of(line)));
+}
+
+void MainWindow::export_picture() {
+    guarded("exporting a picture", [&] {
+        if (!current()->has_picture()) {
+            throw core::InputError("missing", "this workspace shows no picture yet");
+        }
+        const QStringList endings = current()->picture_endings();
+        QString filter = "Pictures (";
+        for (const auto& ending : endings) {
+            filter += "*" + ending + " ";
+        }
+        write_chosen(ask_path(this, "Export picture", proposed_file(endings.front()), filter.trimmed() + ")"), endings,
+                     [&](const fs::path& path) { current()->export_picture(path); });
+    });
+}
+
+void MainWindow::export_table() {
+    guarded("exporting a table", [&] {
+        if (!current()->has_table()) {
+            throw core::InputError("missing", "this workspace shows no table yet");
+        }
+        write_chosen(ask_path(this, "Export table", proposed_file(".csv"), "Tables (*.csv)"), {".csv"},
+                     [&](const fs::path& path) { current()->export_table(path); });
+    });
+}
+
+void MainWindow::export_controller() {
+    guarded("exporting for a controller", [&] {
+        for (auto* panel : panels_) {
+            if (auto* forces = dynamic_cast<ForcePanel*>(panel); forces != nullptr && forces->table()) {
+                const TableOfStudy of = table_of_study(desk_->session(), forces->table_name());
+                if (of.found.empty()) {
+                    show_export(forces->table(), of);
+                    return;
+                }
+                // The force of the model that was found takes a while to be sampled.
+                jobs_->start("export table", "the force with " + qt(of.found),
+                             [this, of, session = desk_->session_pointer()](core::Progress& progress) {
+                                 auto table = std::make_shared<const tables::ForceTable>(
+                                     exported_table(*session, of.name, {}, progress));
+                                 return [this, of, table] { show_export(table, of); };
+                             });
+                return;
+            }
+        }
+        throw core::InputError("missing", "no force table is shown yet", {}, "choose one in Tables (F6)");
+    });
+}
+
+void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of) {
+    auto* dialog = new ExportDialog(
+        *jobs_, table, this, of,
+        of.found.empty()
+            ? ExportDialog::Make()
+            : [session = desk_->session_pointer(), name = of.name](const auto& range, core::Progress& progress) {
+                  return exported_table(*session, name, range, progress);
+              });
+    const auto mark = [this, dialog] {
+        QStringList names;
+        for (const auto& name : marked_tables(desk_->state(), desk_->session())) {
+            names << qt(name);
+        }
+        dialog->set_marked(names);
+    };
+    mark();
+    connect(desk_, &Desk::changed, dialog, mark);
+    connect(dialog, &ExportDialog::written, this,
+            [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
+    const std::string made_of =
+        table_digest(desk_->session(), of.name);  // of what is written, whatever changes meanwhile
+    connect(dialog, &ExportDialog::exported, this, [this, made_of](const QString& path, ExportRecord record) {
+        if (!record.table.empty()) {
+            record.made_of = made_of;
+            desk_->act(words_of_export(path.toStdString(), record));
+        }
+    });
+    connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
+    connect(dialog, &ExportDialog::all_wanted, this, [this](const ExportRecord& how) {
+        const QString folder =
+            QFileDialog::getExistingDirectory(this, "Folder that all marked tables are written into");
+        if (!folder.isEmpty()) {
+            write_marked(how, folder.toStdString());
+        }
+    });
+    dialog->show();
+}
+
+bool MainWindow::write_marked(const ExportRecord& how, const fs::path& folder) {
+    ExportedFiles files;
+    for (const auto& name : marked_tables(desk_->state(), desk_->session())) {
+        ExportRecord record = how;
+        record.table = name;
+        record.name = cases::export_name(name);
+        record.made_of.clear();
+        const auto& axes = desk_->session().study.find_table(name)->axes;
+        std::erase_if(record.range, [&](const auto& policy) {
+            return std::find(axes.begin(), axes.end(), policy.first) == axes.end();
+        });
+        files.emplace_back((fs::absolute(folder) / cases::export_file(name, how.format)).lexically_normal().string(),
+                           record);
+    }
+    if (files.empty()) {
+        problems_->note("No table is marked: select some in the tree (Ctrl+click), or give them a star (Ctrl+B).");
+        return false;
+    }
+    return write_exports(files);
+}
+
+void MainWindow::export_stale() {
+    ExportedFiles files;
+    for (const auto& file : stale_exports(desk_->state(), desk_->session())) {
+        files.emplace_back(file, desk_->state().exports.at(file));
+    }
+    if (files.empty()) {
+        problems_->note("No exported file is stale.");
+        return;
+    }
+    write_exports(files);
+}
+
+/// All in one job and one step of the history; what others have written is not replaced unasked.
+bool MainWindow::write_exports(const ExportedFiles& files) {
+    std::vector<std::string> paths;
+    for (const auto& [file, record] : files) {
+        paths.push_back(file);
+    }
+    QStringList foreign;
+    for (const auto& file : foreign_files(desk_->state(), paths)) {
+        foreign << QFileInfo(qt(file)).fileName();
+    }
+    if (!foreign.isEmpty() &&
+        !ask("Replace",
+             foreign.join(", ") + (foreign.size() > 1 ? " are" : " is") +
+                 " there already, and not as this window wrote " + (foreign.size() > 1 ? "them." : "it."),
+             foreign.size() > 1 ? "Replace them" : "Replace it")) {
+        return false;
+    }
+    jobs_->start(
+        "export again", QString("writing %1 exports").arg(files.size()),
+        [this, files, session = desk_->session_pointer()](core::Progress& progress) {
+            ExportedFiles done;
+            for (const auto& [file, record] : files) {
+                progress.report(static_cast<double>(done.size()) / static_cast<double>(files.size()), file);
+                progress.check();
+                done.emplace_back(file, export_again(*session, file, record, progress));
+            }
+            return [this, done] {
+                if (desk_->act(words_of_exports(done))) {
+                    const auto& step = desk_->history().steps().at(desk_->history().position() - 1);
+                    problems_->note(QString("Wrote %1 exports. The same: ").arg(done.size()) + qt(step.command));
+                }
+            };
+        });
+    return true;
+}
+
+void MainWindow::copy_picture() { QApplication::clipboard()->setImage(current()->picture_to_copy()); }
+
+}  // namespace underbody::studio
