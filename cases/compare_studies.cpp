@@ -197,11 +197,7 @@ private:
         result_.unsettled_a += a.loads->settled == "not settled" ? 1 : 0;
         result_.unsettled_b += b.loads->settled == "not settled" ? 1 : 0;
         const auto resultant = [](const CaseLoads& loads) {
-            const auto part = [&](const char* name) {
-                const double value = loads.value(name);
-                return std::isfinite(value) ? value : 0.0;
-            };
-            return std::hypot(part("lift_force"), part("drag_force"), part("side_force"));
+            return postproc::resultant([&](const char* name) { return loads.value(name); });
         };
         const double length = a.loads->value("reference_length");
         const postproc::LoadScale scale =

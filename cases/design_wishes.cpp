@@ -1,10 +1,10 @@
 // Objectives and limits of [design].
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "cases/design_curves.h"
+#include "core/angle.h"
 #include "core/error.h"
 #include "core/no_limit.h"
 #include "core/text.h"
@@ -62,7 +62,7 @@ tables::Response response_from(const TomlTable& table, const DesignSpec& spec) {
     if (!r.slope_along.empty()) {
         const auto* along = core::find_quantity(r.slope_along);
         const std::string unit = along == nullptr ? "1" : along->unit;
-        r.half_width = table.quantity_or("half_width", unit, unit == "rad" ? std::numbers::pi / 180 : 1e-3);
+        r.half_width = table.quantity_or("half_width", unit, unit == "rad" ? core::degree : 1e-3);
         r.name += "_slope";
     } else if (table.has("half_width")) {
         table.accept("half_width");

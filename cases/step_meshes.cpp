@@ -6,6 +6,7 @@
 
 #include "cases/engine.h"
 #include "core/text.h"
+#include "postproc/loads/deviation.h"
 #include "postproc/loads/mesh_study.h"
 #include "postproc/loads/uncertainty.h"
 
@@ -65,7 +66,7 @@ postproc::LoadScale scale_of(const core::Table& loads, std::size_t row) {
         const auto* column = loads.find(name);
         return column != nullptr && std::isfinite(column->numbers[row]) ? column->numbers[row] : 0.0;
     };
-    return {std::hypot(value("lift_force"), value("drag_force"), value("side_force")), value("reference_length")};
+    return {postproc::resultant(value), value("reference_length")};
 }
 
 std::string compute_mesh(const Engine& engine, const MeshSpec& spec, const std::vector<MeshRow>& rows) {

@@ -7,6 +7,7 @@
 
 #include "core/counted.h"
 #include "core/text.h"
+#include "postproc/loads/deviation.h"
 #include "postproc/loads/transient.h"
 
 namespace underbody::cases {
@@ -64,9 +65,9 @@ CaseLoads mean_of(const Study& study, Run run) {
         }
     }
     const double length = mean.value("reference_length");
-    const auto means = postproc::time_means(
-        histories, std::hypot(mean.value("lift_force"), mean.value("drag_force"), mean.value("side_force")),
-        std::isfinite(length) ? length : 1, mean.file);
+    const auto means =
+        postproc::time_means(histories, postproc::resultant([&](const char* name) { return mean.value(name); }),
+                             std::isfinite(length) ? length : 1, mean.file);
     for (const auto& [quantity, sigma] : means.sigmas) {
         const auto load = std::find_if(mean.values.begin(), mean.values.end(),
                                        [&](const LoadValue& value) { return value.name == quantity; });

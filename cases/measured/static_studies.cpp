@@ -6,12 +6,13 @@
 #include "cases/measured/studies.h"
 #include "core/file.h"
 #include "core/text.h"
+#include "core/water.h"
 
 namespace underbody::cases {
 
 namespace {
 
-constexpr double newton_per_gram = 9.80665e-3;
+constexpr double newton_per_gram = 1e-3 * core::standard_gravity;
 
 /// Factor c of measured = c shape by least squares: the one number of a simple declared model.
 double factor_of(const std::vector<double>& shape, const std::vector<double>& measured) {

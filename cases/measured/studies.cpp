@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "core/html.h"
 #include "core/text.h"
+#include "core/water.h"
 #include "surrogates/discovery/wording.h"
 
 namespace underbody::cases {
@@ -80,11 +81,12 @@ std::vector<MeasuredStudy> ball_drop_studies(const std::filesystem::path& folder
         // a fall knows only forces by mass: a ball that was not weighed falls as one of a kilogram
         const bool weighed = masses.count(name) > 0;
         const double mass = weighed ? masses.at(name) : 1;
-        const dynamics::Model model = dynamics::read_model_text(
-            "[vehicle]\nmass = " + core::format_number(mass) + "\nnet_weight = " + core::format_number(mass * 9.80665) +
-                "\n[environment]\ndensity = 1.2\n"
-                "kinematic_viscosity = 1.5e-5\n",
-            "ball", ".");
+        const dynamics::Model model =
+            dynamics::read_model_text("[vehicle]\nmass = " + core::format_number(mass) +
+                                          "\nnet_weight = " + core::format_number(mass * core::standard_gravity) +
+                                          "\n[environment]\ndensity = 1.2\n"
+                                          "kinematic_viscosity = 1.5e-5\n",
+                                      "ball", ".");
         dynamics::Measurements data;
         data.title = "ball drops, " + name;
         for (const auto& [number, run] : both) {

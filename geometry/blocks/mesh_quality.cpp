@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/counted.h"
 #include "core/text.h"
 
@@ -12,7 +12,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using core::degree;
 
 struct FaceGeometry {
     Vec3 centre, area;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "geometry/mesh/slice.h"
 
@@ -11,7 +11,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double sharp = 12 * std::numbers::pi / 180;
+constexpr double sharp = 12 * core::degree;
 constexpr core::Colour ink{30, 30, 30, 255}, blue{0, 114, 178, 255}, grey{120, 120, 120, 255};
 
 // Four figures: what a mesh cuts off a curve (203.18 of 203.2 mm) is no dimension of the body.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/body/body_surface.h"
@@ -16,7 +16,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using core::degree;
 
 std::string text(double value, int digits = 6) { return core::format_number(value, digits); }
 

@@ -12,8 +12,8 @@ namespace underbody::geometry {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-constexpr double standard_gravity = 9.80665;  ///< m/s^2
 using core::default_water_density;
+using core::standard_gravity;
 
 /// SI, in the axes of the mesh.
 struct MassProperties {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/no_limit.h"
 #include "core/text.h"
 #include "geometry/body/exact_body.h"
@@ -12,7 +13,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double degrees = std::numbers::pi / 180;
+using core::degree;
 
 BodyShape without_additions(BodyShape shape) {
     shape.protrusion.reset();
@@ -60,7 +61,7 @@ public:
     void angle(const char* section, const char* key, double value, double lower, double upper,
                const std::string& why) const {
         const auto text = [](double v, int rounding) {
-            const double d = v / degrees;
+            const double d = v / degree;
             const double scaled = rounding > 0   ? std::ceil(d * 1e3 - 1e-3) / 1e3
                                   : rounding < 0 ? std::floor(d * 1e3 + 1e-3) / 1e3
                                                  : d;
@@ -160,7 +161,7 @@ void check_base(const BodyShape& shape, const Checker& checker) {
     checker.number("body", "taper", shape.taper, -0.8, 0.8, "the fraction by which the base narrows from nose to tail");
     // d(height')/d(height) = 1 - 2 tan(pitch) x (depth - u)/depth^2 must stay positive on the whole lower hull.
     const double bend = std::atan(0.4 * shape.base_depth() / shape.length);
-    const double limit = std::min(15 * degrees, bend);
+    const double limit = std::min(15 * degree, bend);
     checker.angle("body", "base_pitch", shape.base_pitch, -limit, limit,
                   "the pitch of the base, which the hull below the midplane can follow without a fold");
     // The hull leans by 2 base_offset / depth at the base: 58 degrees at this limit.
@@ -349,10 +350,10 @@ void check(const BodyShape& shape, const core::TomlTable* table) {
     if (shape.tail_plate) {
         checker.length("tail_plate", "chord", shape.tail_plate->chord, 0, 0.45 * shape.length,
                        "a plate that moves with the body in its mesh: up to 0.45 body lengths");
-        checker.angle("tail_plate", "half_angle", shape.tail_plate->half_angle, 10 * degrees, 90 * degrees,
+        checker.angle("tail_plate", "half_angle", shape.tail_plate->half_angle, 10 * degree, 90 * degree,
                       "from the tail as far as the widest place of the body");
         checker.angle("tail_plate", "inner_angle", shape.tail_plate->inner_angle, 0,
-                      shape.tail_plate->half_angle - 10 * degrees, "it begins nearer to the tail than it ends");
+                      shape.tail_plate->half_angle - 10 * degree, "it begins nearer to the tail than it ends");
     }
 }
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <unordered_map>
+
+#include "core/angle.h"
 
 namespace underbody::geometry {
 
@@ -86,7 +87,7 @@ std::vector<PointPair> feature_edges(const SurfaceMesh& mesh, double angle) {
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
         return a.edge != b.edge ? a.edge < b.edge : a.triangle < b.triangle;
     });
-    const double facet = std::max(angle, 40 * std::numbers::pi / 180);
+    const double facet = std::max(angle, 40 * core::degree);
     std::vector<PointPair> edges;
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         if (sides[i].edge != sides[i + 1].edge) {

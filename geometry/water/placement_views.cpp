@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "geometry/water/placement.h"
 
@@ -12,7 +12,7 @@ namespace underbody::geometry {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using core::degree;
 
 // The smallest positive angle at which the body touches: the body is lowered as the angle grows, scanned and then
 // bisected.

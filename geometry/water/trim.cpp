@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.h"
 #include "core/text.h"
 
 namespace underbody::geometry {
@@ -109,14 +110,14 @@ Vec3 ballast_position(const MassProperties& body, const Loading& loading, const 
         const double x = std::clamp(place.x, low.x, high.x), y = std::clamp(place.y, low.y, high.y);
         const Vec3 moment = rest.moment + found->mass * Vec3{x, y, place.z};
         const Vec3 up = body.centroid - moment / all.mass;
-        throw core::InputError(
-            "range",
-            "'" + name + "' would have to lie at (" + core::format_number(1000 * place.x, 4) + ", " +
-                core::format_number(1000 * place.y, 4) + ") mm, outside the body",
-            {},
-            "the nearest allowed trim: pitch " +
-                core::format_number(std::atan2(up.x, std::hypot(up.y, up.z)) * 57.29577951308232, 4) + " deg, roll " +
-                core::format_number(std::atan2(up.y, up.z) * 57.29577951308232, 4) + " deg, or a heavier ballast");
+        throw core::InputError("range",
+                               "'" + name + "' would have to lie at (" + core::format_number(1000 * place.x, 4) + ", " +
+                                   core::format_number(1000 * place.y, 4) + ") mm, outside the body",
+                               {},
+                               "the nearest allowed trim: pitch " +
+                                   core::format_number(std::atan2(up.x, std::hypot(up.y, up.z)) / core::degree, 4) +
+                                   " deg, roll " + core::format_number(std::atan2(up.y, up.z) / core::degree, 4) +
+                                   " deg, or a heavier ballast");
     }
     return place;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "core/water.h"
 #include "postproc/field/field.h"
 #include "postproc/field/surface_arrays.h"
 #include "postproc/loads/declared.h"
@@ -161,7 +162,6 @@ std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, 
         return {};
     }
     const double density = loads.coefficients->density, speed = loads.coefficients->speed;
-    constexpr double gravity = 9.81;
     WallPressures wall = pressures_of(field, loads, base);
     const bool apart = !wall.values.empty();
     if (!apart) {
@@ -173,7 +173,7 @@ std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, 
     }
     double highest = above_the_middle(wall.values);
     for (std::size_t i = 0; i < wall.values.size(); ++i) {
-        wall.values[i] += density * gravity * wall.heights[i];
+        wall.values[i] += density * core::standard_gravity * wall.heights[i];
     }
     highest = std::min(highest, above_the_middle(wall.values));  // the weight of the water, where the file has it
     // Round bodies over a moving ground have 1.4 to 1.5; a film under the base may push harder.

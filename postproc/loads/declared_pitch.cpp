@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/counted.h"
 #include "core/text.h"
 #include "core/told.h"
@@ -17,37 +18,35 @@ namespace {
 
 using core::Problem;
 
-constexpr double one_degree = std::numbers::pi / 180;
-
 std::string told_tilt(double rad) { return core::told(std::abs(rad) < 1e-5 ? 0 : rad, "rad", 4); }
 
 /// Is one angle the other, times the degrees of a radian? `shown`: the one in the file, which has to be one.
 bool is_turned_unit(double larger, double smaller, double shown) {
-    constexpr double slack = 1.02, least = 0.3 * one_degree;
-    const double ratio = larger * one_degree / smaller;
+    constexpr double slack = 1.02, least = 0.3 * core::degree;
+    const double ratio = larger * core::degree / smaller;
     return std::abs(shown) > least && ratio < slack && ratio > 1 / slack;
 }
 
 /// What to ask about a pitch that one case alone shows to be wrong, `tilt` NaN: no base is known; else empty.
 std::string question_of_pitch(double pitch, double tilt) {
-    constexpr double most = std::numbers::pi / 2, most_of_base = 15 * one_degree;  // as shapes may have it
+    constexpr double most = std::numbers::pi / 2, most_of_base = 15 * core::degree;  // as shapes may have it
     if (is_turned_unit(pitch, tilt, tilt) || (std::isnan(tilt) && std::abs(pitch) > most)) {
         return "is it in deg, and was read in rad?";
     }
     if (is_turned_unit(tilt, pitch, tilt)) {
         return "is it in rad, and was read in deg?";
     }
-    return std::abs(pitch) > most || std::abs(pitch - tilt) > most_of_base + one_degree
+    return std::abs(pitch) > most || std::abs(pitch - tilt) > most_of_base + core::degree
                ? "is the unit right, and the file the one that was meant?"
                : "";
 }
 
 /// rad: by how much a pitch may be off for the digits that it is written with, as degrees.
 double pitch_rounding(double pitch) {
-    const std::string digits = core::format_number(pitch / one_degree, 9);
+    const std::string digits = core::format_number(pitch / core::degree, 9);
     const auto point = digits.find('.');
     const auto behind = point == std::string::npos ? 0 : static_cast<double>(digits.size() - point - 1);
-    return digits.find('e') == std::string::npos ? 0.5 * one_degree * std::pow(10.0, -behind) : 0;
+    return digits.find('e') == std::string::npos ? 0.5 * core::degree * std::pow(10.0, -behind) : 0;
 }
 
 /// Of a case, what its file shows against what was said of it.
@@ -56,7 +55,7 @@ struct PitchOfCase {
     double pitch = 0, tilt = 0;
     [[nodiscard]] double off() const { return tilt - pitch; }
     [[nodiscard]] bool is_off(double offset) const {
-        return std::abs(off() - offset) > 0.2 * one_degree + pitch_rounding(pitch);
+        return std::abs(off() - offset) > 0.2 * core::degree + pitch_rounding(pitch);
     }
 };
 
@@ -107,9 +106,9 @@ std::optional<Problem> alike_in_files(const std::vector<PitchOfCase>& cases) {
     const auto [lowest, highest] = std::minmax_element(
         cases.begin(), cases.end(), [](const PitchOfCase& a, const PitchOfCase& b) { return a.pitch < b.pitch; });
     const bool alike = std::all_of(cases.begin(), cases.end(), [&](const PitchOfCase& one) {
-        return std::abs(one.tilt - cases.front().tilt) < 0.02 * one_degree;
+        return std::abs(one.tilt - cases.front().tilt) < 0.02 * core::degree;
     });
-    if (!alike || !(highest->pitch - lowest->pitch > 0.25 * one_degree)) {
+    if (!alike || !(highest->pitch - lowest->pitch > 0.25 * core::degree)) {
         return {};
     }
     return Problem{Problem::Severity::warning,

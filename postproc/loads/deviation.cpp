@@ -5,6 +5,14 @@
 
 namespace underbody::postproc {
 
+double resultant(const std::function<double(const char*)>& value_of) {
+    const auto known = [&](const char* name) {
+        const double value = value_of(name);
+        return std::isfinite(value) ? value : 0.0;
+    };
+    return std::hypot(known("lift_force"), known("drag_force"), known("side_force"));
+}
+
 LoadScale load_scale(double own, double stated, double length) {
     constexpr double rounding = 1e-9;
     return {own > rounding * stated ? own : stated, length};

@@ -1,9 +1,15 @@
 // How far a load is from what somebody else states of it: one measure for reports, monitors, manifests and studies.
 #pragma once
 
+#include <functional>
+
 #include "postproc/field/vector_math.h"
 
 namespace underbody::postproc {
+
+/// N: size of the resultant force. `value_of("lift_force")` and of drag and side force, N; one that is not known
+/// (not-a-number) counts as nought.
+double resultant(const std::function<double(const char*)>& value_of);
 
 /// What deviations are measured by.
 struct LoadScale {

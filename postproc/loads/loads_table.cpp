@@ -112,9 +112,7 @@ std::vector<Comparison> compare_with_stated(const std::vector<LoadsCase>& cases,
             const double value = value_of(one.numbers, name, 0.0);
             return std::isfinite(value) ? value : 0;
         };
-        const LoadScale scale =
-            load_scale(norm(one.loads.total.force),
-                       std::hypot(stated("lift_force"), stated("drag_force"), stated("side_force")), one.loads.length);
+        const LoadScale scale = load_scale(norm(one.loads.total.force), resultant(stated), one.loads.length);
         std::vector<std::string> missing;
         for (const auto& load : table_row(one.loads)) {
             if (!has(one.numbers, load.name) || load.name == "closure") {

@@ -88,7 +88,7 @@ class Judge {
 public:
     Judge(const LoadsResult& result, core::Problems& notes) : result_(result), notes_(notes) {
         const auto& named = result.named;
-        force_ = std::hypot(named.lift_force, named.drag_force, named.side_force);
+        force_ = norm(result.total.force);
     }
 
     void take(const std::vector<StatedLoad>& stated) {

@@ -149,9 +149,7 @@ LoadsCase mean_of(Run run, core::Problems& notes) {
         }
     }
     const std::vector<TimeHistory> histories = histories_of(result.loads, run);
-    const double force =
-        std::hypot(result.loads.named.lift_force, result.loads.named.drag_force, result.loads.named.side_force);
-    TimeMeans means = time_means(histories, force, result.loads.length, result.file);
+    TimeMeans means = time_means(histories, norm(result.loads.total.force), result.loads.length, result.file);
     result.sigmas = std::move(means.sigmas);
     result.settled = std::move(means.settled);
     std::erase_if(result.numbers, [](const auto& entry) { return entry.first == "time"; });

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.h"
 #include "core/file.h"
 #include "core/table.h"
 #include "core/told.h"
@@ -24,9 +25,7 @@ using core::format_number;
 
 // m as mm; the rounding errors of symmetric bodies (1e-13 mm) are shown as 0.
 std::string mm(double metres) { return rounded(std::abs(metres) < 1e-12 ? 0.0 : 1e3 * metres, 5); }
-std::string degrees(double radians) {
-    return rounded(std::abs(radians) < 1e-12 ? 0.0 : 57.29577951308232 * radians, 4);
-}
+std::string degrees(double radians) { return rounded(std::abs(radians) < 1e-12 ? 0.0 : radians / core::degree, 4); }
 
 double positive(const std::string& text, const char* unit, const char* option) {
     const double value = option_value(option, text, unit);
@@ -202,7 +201,7 @@ void print_body(const geometry::Body& body, Shell& shell) {
         shell.print("patch       " + patch.name + ": " + std::to_string(patch.faces) + " triangles, " +
                     rounded(patch.area * 1e4, 5) + " cm^2");
     }
-    std::string line = "quality     smallest angle " + rounded(quality.smallest_angle * 57.29578, 3) +
+    std::string line = "quality     smallest angle " + rounded(quality.smallest_angle / core::degree, 3) +
                        " deg, largest aspect ratio " + rounded(quality.largest_aspect_ratio, 3);
     if (quality.exact) {
         line += ", off the exact shape by " + rounded(quality.exact->distance_rms * 1e6, 3) + " um (RMS), " +

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "core/units.h"
@@ -173,7 +174,7 @@ std::string free_in_pitch(const dynamics::Model& model, const dynamics::Conditio
     std::string stable, unstable;
     for (const dynamics::HeaveEquilibrium& e : dynamics::HeavePitch(model, held).equilibria()) {
         const std::string where = e.name + " at " + core::format_number(1e3 * e.gap, 5) + " mm, " +
-                                  core::format_number(57.29577951308232 * e.pitch, 4) + " deg nose up";
+                                  core::format_number(e.pitch / core::degree, 4) + " deg nose up";
         if (e.stable) {
             stable += (stable.empty() ? "" : "; ") + where;
         } else {
@@ -266,9 +267,8 @@ void heave_pitch(const dynamics::Model& model, const dynamics::Conditions& held,
             one["lqr"]["poles"].push_back(complex_json(pole));
         }
         json["heave_pitch"].push_back(one);
-        constexpr double degrees = 57.29577951308232;
         text += "heave and pitch, " + e.name + " at " + with_error(1e3 * e.gap, 1e3 * error.gap, 6) + " mm, " +
-                with_error(degrees * e.pitch, degrees * error.pitch, 4) + " deg nose up\n";
+                with_error(e.pitch / core::degree, error.pitch / core::degree, 4) + " deg nose up\n";
         text += modes_text(modes, error);
         text += rank_text(system, "force and moment");
     }
@@ -285,7 +285,6 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
         }
         return;
     }
-    constexpr double degrees = 57.29577951308232;
     const double beta = dynamics::pitch_free_elevation(layout->turn_x, layout->turn_z, layout->gamma);
     const dynamics::YawTransfer transfer = dynamics::yaw_transfer(c, speed, friction, *layout);
     nlohmann::json poles = nlohmann::json::array();
@@ -310,16 +309,16 @@ void turning_jets(const dynamics::Model& model, const dynamics::SurfaceCoefficie
         {"beta_without_pitch", beta},      {"yaw_per_difference", {{"poles", poles}, {"zero", transfer.zero}}},
         {"needed_torque", chart.needed},   {"best_gamma", chart.best_gamma},
         {"least_gamma", chart.least_gamma}};
-    text += "  turning jets: gamma " + core::format_number(degrees * layout->gamma, 4) + " deg, beta " +
-            core::format_number(degrees * layout->beta, 4) +
-            " deg (thrust without pitch moment: " + core::format_number(degrees * beta, 5) +
+    text += "  turning jets: gamma " + core::format_number(layout->gamma / core::degree, 4) + " deg, beta " +
+            core::format_number(layout->beta / core::degree, 4) +
+            " deg (thrust without pitch moment: " + core::format_number(beta / core::degree, 5) +
             " deg)\n  yaw rate per thrust difference: poles " + pole_text + " 1/s, zero " +
             core::format_number(transfer.zero, 5) + " 1/s" + (transfer.zero > 0 ? " (non-minimum phase)" : "") +
             "\n  yaw torque needed " + core::format_number(chart.needed, 4) + " N m" +
             (std::isnan(chart.least_gamma)
                  ? ": more than a pair gives at any angle\n"
-                 : ": gamma at least " + core::format_number(degrees * chart.least_gamma, 4) + " deg, most torque at " +
-                       core::format_number(degrees * chart.best_gamma, 4) + " deg\n");
+                 : ": gamma at least " + core::format_number(chart.least_gamma / core::degree, 4) +
+                       " deg, most torque at " + core::format_number(chart.best_gamma / core::degree, 4) + " deg\n");
 }
 
 /// Thrusts of the jets that hold a straight run, or none; how that is said.
@@ -411,7 +410,7 @@ void body(const dynamics::Model& model, const dynamics::Conditions& held, const 
         system, {"surge", "sway", "heave", "pitch", "yaw", "pitch", "heading", "north", "east", "heave"});
     json["body"] = system_json(system, modes);
     text += "the whole body at " + core::format_number(1e3 * at.gap, 6) + " mm, " +
-            core::format_number(57.29577951308232 * at.pitch, 4) + " deg nose up, " + core::format_number(speed, 4) +
+            core::format_number(at.pitch / core::degree, 4) + " deg nose up, " + core::format_number(speed, 4) +
             " m/s\n";
     for (const dynamics::Mode& mode : modes) {
         text += mode_text(mode);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/angle.h"
 #include "core/counted.h"
 #include "core/table.h"
 #include "core/text.h"
@@ -203,7 +204,7 @@ int run_sweep(const RegionArguments& a, const dynamics::Model& model, const dyna
     show_forces(shell, model, options.held, json);
     for (std::size_t i = 0; i < sweep.value.size(); ++i) {
         const std::string unit = angle ? "deg" : dynamics::channel_unit(channel);
-        names.push_back(sweep.name + " " + core::format_number(sweep.value[i] * (angle ? 57.29577951308232 : 1), 4) +
+        names.push_back(sweep.name + " " + core::format_number(sweep.value[i] * (angle ? 1 / core::degree : 1), 4) +
                         " " + unit);
         nlohmann::json one;
         dynamics::to_json(one, sweep.regions[i]);
@@ -301,7 +302,7 @@ nlohmann::json safe_sets(const dynamics::StabilityRegion& region, Shell& shell) 
             sets.push_back(one);
             const auto half = [&](std::size_t axis) {
                 const bool angle = set.axes[axis].starts_with("pitch");
-                return core::format_number((angle ? 57.29577951308232 : 1e3) * set.ellipse[axis], 4) +
+                return core::format_number((angle ? 1 / core::degree : 1e3) * set.ellipse[axis], 4) +
                        (angle ? " deg" : " mm") + (set.axes[axis] == "gap" || set.axes[axis] == "pitch" ? "" : "/s");
             };
             shell.print("safe about " + end.name + ": ellipse +-" + half(0) + ", +-" + half(1) + "\n");

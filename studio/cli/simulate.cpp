@@ -7,6 +7,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "core/angle.h"
 #include "core/table.h"
 #include "core/text.h"
 #include "core/told.h"
@@ -257,7 +258,7 @@ void write_motion(const Motion& motion, const core::Figure& figure, const Simula
 }
 
 std::string millimetres(double metres, int digits = 6) { return core::format_number(1e3 * metres, digits) + " mm"; }
-std::string angle_in_degrees(double radians) { return core::format_number(57.29577951308232 * radians, 5) + " deg"; }
+std::string angle_in_degrees(double radians) { return core::format_number(radians / core::degree, 5) + " deg"; }
 
 std::string event_text(const std::vector<dynamics::TrajectoryEvent>& events) {
     std::string text;

@@ -133,6 +133,16 @@ std::string document(const FileFormat& format, const FileTable& of, const FileKe
         if (table.path == "log.channel.*" && !(here && key != nullptr && key->name == "message")) {
             text += "message = \"RFND\"\n";
         }
+        const bool of_curve =
+            key != nullptr && (key->name == "curve" || key->name == "restoring" || key->name == "moment_at_most");
+        if (table.path == "design" && of_curve) {
+            text += "net_weight = \"0.3 N\"\nvirtual_mass = \"3.954 kg\"\n";
+            text += "gap = [\"2 mm\", \"5 mm\", \"10 mm\"]\npitch = [\"-1 deg\", \"0 deg\", \"1 deg\"]\n";
+        }
+        if (here && of_curve) {  // limits are in the unit of the number
+            text = replaced(text, "at_least = \"0.1 N\"", "at_least = 0.1");
+            text += key->name != "curve" ? "curve = \"pitch_window\"\n" : "";
+        }
         if (table.path == "sweep" && !(here && key != nullptr && key->name == "speed")) {
             text += "speed = \"0.5 m/s\"\n";
         }

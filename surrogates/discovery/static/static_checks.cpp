@@ -9,6 +9,7 @@
 #include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "core/water.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/discovery/wording.h"
 
@@ -147,8 +148,8 @@ private:
              {0.001, "the column holds whole units and is labelled as thousandths"},
              {101.97162, "the column holds gram-force and is labelled as newton"},
              {0.10197162, "the column holds kilogram-force and is labelled as newton"},
-             {9.80665, "the column holds newton and is labelled as kilogram-force"},
-             {9.80665e-3, "the column is labelled as gram-force and was converted already"},
+             {core::standard_gravity, "the column holds newton and is labelled as kilogram-force"},
+             {1e-3 * core::standard_gravity, "the column is labelled as gram-force and was converted already"},
              {-1, "its sign is that of the other axis (lift is positive up, drag positive when it slows the body)"}}};
         for (const Slip& slip : slips) {
             if (std::abs(along) > 0.9 && std::abs(ratio / slip.factor - 1) < 0.15) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <set>
 
+#include "core/angle.h"
 #include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -32,7 +32,7 @@ Shown shown(Channel channel) {
         return {1.0 / 3600, "h"};
     }
     if (channel == Channel::pitch) {
-        return {180 / std::numbers::pi, "deg"};
+        return {1 / core::degree, "deg"};
     }
     return {1, dynamics::channel_unit(channel)};
 }

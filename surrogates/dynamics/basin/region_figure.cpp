@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "surrogates/dynamics/basin/region.h"
 
@@ -22,9 +22,8 @@ Shown shown(const std::string& axis) {
     if (axis == "heave_velocity") {
         return {"heave velocity", "mm/s", 1e3};
     }
-    const double degrees = 180 / std::numbers::pi;
-    return axis == "pitch"        ? Shown{"pitch", "deg", degrees}
-           : axis == "pitch_rate" ? Shown{"pitch rate", "deg/s", degrees}
+    return axis == "pitch"        ? Shown{"pitch", "deg", 1 / core::degree}
+           : axis == "pitch_rate" ? Shown{"pitch rate", "deg/s", 1 / core::degree}
                                   : Shown{axis, "", 1};
 }
 

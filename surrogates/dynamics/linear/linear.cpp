@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/matrix_algebra.h"
 
@@ -301,7 +302,6 @@ GammaChart gamma_chart(const SurfaceCoefficients& c, const EvieJets& jets, doubl
 core::Figure gamma_figure(const GammaChart& chart) {
     core::Figure figure;
     figure.title = "Jet angle: yaw torque against thrust lost";
-    constexpr double degrees = 180 / std::numbers::pi;
     figure.x = {"jet angle gamma", "deg"};
     figure.y = {"yaw torque of a pair", "N m"};
     core::FigureCurve torque{"yaw torque at full thrust", {}, chart.torque, core::palette(0)};
@@ -309,17 +309,17 @@ core::Figure gamma_figure(const GammaChart& chart) {
         "forward thrust left (1: the height of the largest torque)", {}, {}, core::palette(1), 2, true};
     const double most = *std::max_element(chart.torque.begin(), chart.torque.end());
     for (std::size_t i = 0; i < chart.gamma.size(); ++i) {
-        torque.x.push_back(chart.gamma[i] * degrees);
-        surge.x.push_back(chart.gamma[i] * degrees);
+        torque.x.push_back(chart.gamma[i] / core::degree);
+        surge.x.push_back(chart.gamma[i] / core::degree);
         surge.y.push_back(chart.surge[i] * most);
     }
     figure.curves = {torque, surge};
     figure.lines.push_back({false, chart.needed, "needed: sideslip and friction on one side"});
     if (!std::isnan(chart.least_gamma)) {
-        figure.lines.push_back({true, chart.least_gamma * degrees, "least angle"});
+        figure.lines.push_back({true, chart.least_gamma / core::degree, "least angle"});
     }
     figure.caption = "Elevation beta nulls the thrust's pitch moment at each angle (" +
-                     core::format_number(chart.beta * degrees, 4) + " deg at the chosen one). Needed torque " +
+                     core::format_number(chart.beta / core::degree, 4) + " deg at the chosen one). Needed torque " +
                      core::format_number(chart.needed, 4) + " N m.";
     return figure;
 }

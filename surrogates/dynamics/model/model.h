@@ -48,7 +48,7 @@ struct Environment {
     double density = core::default_water_density;  ///< kg/m^3
     double kinematic_viscosity = 1e-6;             ///< m^2/s
     double temperature = 293.15;                   ///< K
-    double gravity = 9.80665;                      ///< m/s^2
+    double gravity = core::standard_gravity;       ///< m/s^2
 };
 
 /// Resistance with the sign of the velocity: F(w) w >= 0, subtracted from the equation of motion.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/motion_step.h"
@@ -81,7 +81,7 @@ void MeasuredBody::look_at_roll(const MeasuredRun& run) {
         most = std::isfinite(column->numbers[k]) ? std::max(most, std::abs(column->numbers[k])) : most;
     }
     if (most > much_roll) {
-        of_roll_ = "run " + run.name + ": the roll reaches " + core::format_number(most * 180 / std::numbers::pi, 3) +
+        of_roll_ = "run " + run.name + ": the roll reaches " + core::format_number(most / core::degree, 3) +
                    " deg, while the motion of the whole body holds it at zero: what it does to the other axes passes "
                    "for forces that the model lacks";
     }

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
@@ -13,10 +13,10 @@ namespace underbody::dynamics {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;  ///< a radian
-constexpr double touching_gap = 1e-9;               ///< m
-constexpr double touching_speed = 1e-7;             ///< m/s
-constexpr double shortest_piece = 1e-7;             ///< s
+using core::degree;
+constexpr double touching_gap = 1e-9;    ///< m
+constexpr double touching_speed = 1e-7;  ///< m/s
+constexpr double shortest_piece = 1e-7;  ///< s
 constexpr int most_stuck = 200;
 
 /// Motion in pieces of one contact state each. States: the ten of the body, the thrusts of jets with a lag, the memory
@@ -215,7 +215,7 @@ BodyTrajectory simulate_body(const RigidBody& body, const BodyState& start, cons
     constexpr double upright = 1.5;  // rad
     if (std::abs(start[state_theta]) > upright) {
         throw core::InputError("range", "the start stands on its nose or tail: pitch " +
-                                            core::format_number(degrees * start[state_theta], 4) + " deg");
+                                            core::format_number(start[state_theta] / degree, 4) + " deg");
     }
     refuse_start_in_ground(body.edge_gaps(start));
     if (!(options.duration > 0) || options.output_step < 0) {
@@ -277,8 +277,8 @@ core::Figure trajectory_figure(const BodyTrajectory& trajectory) {
     add_states(figure, trajectory.time, trajectory.state,
                {{"speed forward, cm/s", state_u, 100},
                 {"speed to starboard, cm/s", state_v, 100},
-                {"pitch (nose up), deg", state_theta, degrees},
-                {"heading, deg", state_psi, degrees}});
+                {"pitch (nose up), deg", state_theta, 1 / degree},
+                {"heading, deg", state_psi, 1 / degree}});
     figure.caption =
         "Gap at the centre of the base, speeds along the body, pitch and heading; ends by " + trajectory.end + ".";
     return figure;

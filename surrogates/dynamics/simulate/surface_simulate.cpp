@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/jet_drive.h"
@@ -165,8 +165,8 @@ core::Figure trajectory_figure(const SurfaceTrajectory& trajectory) {
     add_states(figure, trajectory.time, trajectory.state,
                {{"speed forward, cm/s", 0, 100},
                 {"speed to starboard, cm/s", 1, 100},
-                {"yaw rate, deg/s", 2, 180 / std::numbers::pi},
-                {"heading, deg", 3, 180 / std::numbers::pi}});
+                {"yaw rate, deg/s", 2, 1 / core::degree},
+                {"heading, deg", 3, 1 / core::degree}});
     figure.caption =
         "Speeds along the body, yaw and heading of a run flat on the ground; ends by " + trajectory.end + ".";
     return figure;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/text.h"
 #include "core/water.h"
 #include "surrogates/dynamics/linear/linear.h"
@@ -21,7 +22,7 @@ using core::ClosedForm;
 using Result = ClosedForm::Result;
 using Values = ClosedForm::Values;
 
-constexpr double degree = std::numbers::pi / 180;
+using core::degree;
 constexpr std::nullopt_t needed = std::nullopt;
 
 std::string number(double value) { return core::format_number(value, 3); }
