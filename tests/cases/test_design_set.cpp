@@ -1,9 +1,11 @@
 // The shipped search's own CFD: how well surrogates over its shapes do on shapes that they have not seen.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "cases/design.h"
+#include "cases/design_proof.h"
 #include "tests/support/support.h"
 
 namespace {
@@ -40,6 +42,16 @@ TEST(ShippedSearch, SurrogatesHoldOnShapesLeftOut) {
         EXPECT_GE(check.inside_95, 0.90);
         EXPECT_GE(check.inside_upper, 0.95);  // counted by shape
         EXPECT_LE(check.root_mean_square, 0.5 * check.nearest_shape);
+    }
+}
+
+TEST(ShippedSearch, WhatWasPredictedOfItsBestIsComparedWithItsRuns) {
+    const auto all = proofs(shipped());
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all.front().note, "");
+    EXPECT_EQ(all.front().responses.size(), 6u);
+    for (const ProofOfResponse& one : all.front().responses) {
+        EXPECT_LT(std::abs(one.difference_in_sigmas()), 2) << one.name;
     }
 }
 
