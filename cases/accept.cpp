@@ -86,29 +86,26 @@ fs::path folder_of(const Files& files) {
     return folder;
 }
 
-bool same_file(const fs::path& a, const fs::path& b) {
-    return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
-}
-
-}  // namespace
-
-namespace {
-
 /// The model of a map with the study's tables in it, as `study run` writes it: a measurement that was judged by it
 /// found what the map lacks, and the found model has these tables already.
 bool is_model_of_map(const Study& study, const RegionSpec& spec, const fs::path& model) {
-    return !spec.forces.empty() && same_file(model, study.folder() / "report" / "models" / spec.name / "model.toml");
+    return !spec.forces.empty() && same_place(model, study.folder() / "report" / "models" / spec.name / "model.toml");
 }
 
 }  // namespace
+
+fs::path accepted_model(const std::string& measurement) { return fs::path("models") / measurement / "model.toml"; }
+
+bool same_place(const fs::path& a, const fs::path& b) {
+    return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
 
 Accepted accept_model(const Study& study, const StudyResults& results, const std::string& measurement) {
     Accepted accepted;
     const Files found = found_files(study, results, measurement, accepted.sentence);
-    const fs::path to = fs::path("models") / measurement;
-    accepted.model = to / "model.toml";
+    accepted.model = accepted_model(measurement);
     for (const auto& [name, text] : found) {
-        accepted.files.emplace_back(to / name, text);
+        accepted.files.emplace_back(accepted.model.parent_path() / name, text);
     }
     const fs::path old = measurement_named(study, measurement).model;
     accepted.study_text = core::read_file(study.folder() / "study.toml");
@@ -117,12 +114,12 @@ Accepted accept_model(const Study& study, const StudyResults& results, const std
         accepted.users.push_back(std::string(kind) + " '" + name + "'");
     };
     for (const auto& spec : study.measurements) {
-        if (same_file(spec.model, old)) {
+        if (same_place(spec.model, old)) {
             take("measurement", spec.name);
         }
     }
     for (const auto& spec : study.regions) {
-        if (same_file(spec.model, old)) {
+        if (same_place(spec.model, old)) {
             take("region", spec.name);
         } else if (is_model_of_map(study, spec, old)) {
             take("region", spec.name);
@@ -147,14 +144,14 @@ Study with_accepted(const Study& study, const StudyResults& results, const std::
     const fs::path old = measurement_named(study, measurement).model;
     Study changed = study;
     for (auto& spec : changed.measurements) {
-        spec.model = same_file(spec.model, old) ? found : spec.model;
+        spec.model = same_place(spec.model, old) ? found : spec.model;
     }
     for (auto& spec : changed.regions) {
         if (is_model_of_map(study, spec, old)) {
             spec.forces.clear();
             spec.model = found;
         }
-        spec.model = same_file(spec.model, old) ? found : spec.model;
+        spec.model = same_place(spec.model, old) ? found : spec.model;
     }
     return changed;
 }

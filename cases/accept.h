@@ -11,12 +11,17 @@
 namespace underbody::cases {
 
 struct Accepted {
-    std::filesystem::path model;  ///< relative to the study: models/NAME/model.toml
+    std::filesystem::path model;                                       ///< accepted_model()
     std::vector<std::pair<std::filesystem::path, std::string>> files;  ///< with their text, relative likewise
     std::vector<std::string> users;  ///< "measurement 'heave test'", "region 'glide'": whose model it becomes
     std::string study_text;          ///< of study.toml then
     std::string sentence;            ///< the verdict
 };
+
+/// Where the model of a measurement is written when it is accepted, relative to the study: models/NAME/model.toml.
+std::filesystem::path accepted_model(const std::string& measurement);
+/// One place in two spellings; nothing need be there.
+bool same_place(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// What accepting would change; nothing is written. The files are those of the stored discovery (else of the report
 /// beside the study, which must be of the same result); the model becomes that of the measurement and of each

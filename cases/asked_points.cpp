@@ -34,15 +34,11 @@ std::vector<SearchVariable> conditions_of(const DesignSpec& spec) {
 
 std::vector<std::pair<std::string, double>> only_values(const DesignSpec& spec) {
     std::vector<std::pair<std::string, double>> all;
-    const auto take = [&](const std::string& name, const std::vector<double>& values) {
-        if (values.size() == 1) {
-            all.emplace_back(name, values.front());
+    for (const ComputedCondition& c : spec.conditions()) {
+        if (c.values.size() == 1) {
+            all.emplace_back(c.name, c.values.front());
         }
-    };
-    take("gap", spec.gaps);
-    take("pitch", spec.pitches);
-    take("speed", spec.speeds);
-    take(spec.jet.quantity, spec.jet.values);
+    }
     return all;
 }
 

@@ -151,7 +151,7 @@ Design Design::open(const Study& study) {
     design.spec_ = *study.design;
     check_responses(design.spec_);
     check_count(design.spec_, study);
-    design.water_ = {study.reference.number("density"), !study.symmetry.empty()};
+    design.water_ = {study.reference.number("density"), !study.symmetry.empty(), study.moments_about};
     design.base_ = geometry::read_shape(design.spec_.shape);
     const auto& varied = design.spec_.variables;
     if (design.spec_.jet.any() && !design.base_.nozzle &&

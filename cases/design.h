@@ -10,6 +10,7 @@
 //   varied, how the mesh was made, loads with NAME_sigma, state.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -50,6 +51,7 @@ struct RunOrigin {
 struct DesignWater {
     std::optional<double> density;  ///< kg/m^3
     bool half = false;
+    std::optional<std::array<double, 3>> moments_about;  ///< m, file axes; none: the centre of the base
 };
 
 /// Loads of one design at one condition.
@@ -123,8 +125,8 @@ public:
     /// Indices over its variables, of the mean.
     [[nodiscard]] tables::SobolIndices sensitivity(const LearnedNumber& number) const;
 
-    /// Hash of the shape that is varied and of the definitions of objectives and limits: a prediction of others is no
-    /// prediction of these.
+    /// Hash of the shape that is varied, of water, conditions, jet and the point of the moments, and of what objectives
+    /// and limits are of: a prediction of others is no prediction of these.
     [[nodiscard]] std::string what_is_asked() const;
 
     [[nodiscard]] core::Table plan_table() const;

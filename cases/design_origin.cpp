@@ -292,18 +292,11 @@ CaseRecord asked_for(const DesignSpec& spec, const geometry::BodyShape& base, co
                      const std::vector<double>& at, const std::string& fidelity) {
     const auto all = spec.all_variables();
     Conditions conditions;
-    const auto set = [&](const std::string& name, const std::vector<double>& values) {
-        const SearchVariable* varied = variable_named(all, name);
-        if (varied != nullptr) {
-            conditions.set(name, at[static_cast<std::size_t>(varied - all.data())]);
-        } else if (!values.empty()) {
-            conditions.set(name, values.front());
-        }
-    };
-    set("gap", spec.gaps);
-    set("pitch", spec.pitches);
-    set("speed", spec.speeds);
-    set(spec.jet.quantity, spec.jet.values);
+    for (const ComputedCondition& c : spec.conditions()) {
+        const SearchVariable* varied = variable_named(all, c.name);
+        conditions.set(c.name,
+                       varied != nullptr ? at[static_cast<std::size_t>(varied - all.data())] : c.values.front());
+    }
     SweepSpec sweep;
     sweep.jet = spec.jet;
     sweep.kinematic_viscosity = spec.kinematic_viscosity;
@@ -394,23 +387,8 @@ void note_silent_rows(const DesignSpec& spec, const std::string& file, const std
     }
 }
 
-namespace {
-
-/// What [design] computes of a condition, in SI, ascending.
-struct ComputedCondition {
-    const char* name;
-    std::string unit;
-    const std::vector<double>& values;
-};
-
-}  // namespace
-
 void note_other_conditions(const DesignSpec& spec, const core::Table& table, core::Problems& notes) {
-    const std::string jet_unit = spec.jet.any() ? spec.jet.unit() : std::string();
-    for (const ComputedCondition& c :
-         {ComputedCondition{"gap", "m", spec.gaps}, ComputedCondition{"pitch", "rad", spec.pitches},
-          ComputedCondition{"speed", "m/s", spec.speeds},
-          ComputedCondition{spec.jet.quantity.c_str(), jet_unit, spec.jet.values}}) {
+    for (const ComputedCondition& c : spec.conditions()) {
         if (c.values.size() < 2 || table.find(c.name) == nullptr) {
             continue;
         }
@@ -434,8 +412,8 @@ void note_other_conditions(const DesignSpec& spec, const core::Table& table, cor
         };
         const auto [least, most] = std::minmax_element(other.begin(), other.end());
         notes.push_back({core::Problem::Severity::warning,
-                         std::string(c.name) + " is " + shown(*least, *most) + " in " +
-                             core::counted(other.size(), "row") + ", and [design] computes " + shown(low, high) +
+                         c.name + " is " + shown(*least, *most) + " in " + core::counted(other.size(), "row") +
+                             ", and [design] computes " + shown(low, high) +
                              ": what is said there rests on rows that lie elsewhere",
                          table.place(first, c.name)});
     }

@@ -1,5 +1,6 @@
 // The plan of a design search: plan.csv and the shapes of its designs.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cases/design.h"
@@ -9,6 +10,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/hash.h"
+#include "core/text.h"
 #include "geometry/body/variants.h"
 #include "surrogates/tables/search/sampling.h"
 
@@ -198,33 +200,35 @@ core::Table Design::plan_table() const {
 
 std::string Design::what_is_asked() const {
     core::Hasher hash;
-    hash.add(hash_of_base(spec_, base_))
-        .add(spec_.kinematic_viscosity)
-        .add(water_.density.value_or(geometry::default_water_density));
-    for (const auto* values : {&spec_.gaps, &spec_.pitches, &spec_.speeds, &spec_.jet.values}) {
-        hash.add("values of a condition");
-        for (const double value : *values) {
-            hash.add(value);
-        }
+    hash.add(hash_of_base(spec_, base_));
+    // As shape_hash(): the same number written in other units differs in its last bits.
+    const auto number = [&](double value) { hash.add(core::format_number(value == 0 ? 0.0 : value, 12)); };
+    const auto numbers = [&](const std::string& of, const auto& values) {
+        hash.add(of);
+        std::for_each(values.begin(), values.end(), number);
+    };
+    number(spec_.kinematic_viscosity);
+    number(water_.density.value_or(geometry::default_water_density));
+    if (water_.moments_about) {
+        numbers("moments about", *water_.moments_about);
     }
-    const auto add = [&](const Response& response) {
-        hash.add(response.name).add(response.quantity).add(response.slope_along).add(response.half_width);
+    for (const ComputedCondition& condition : spec_.conditions()) {
+        numbers(condition.name, condition.values);
+    }
+    numbers("flow of a voltage", std::array{spec_.jet.flow_per_volt, spec_.jet.dead_band});
+    for (const Response& response : spec_.responses()) {
+        hash.add(response.name).add(response.quantity).add(response.slope_along);
+        number(response.half_width);
         for (const auto& condition : response.conditions) {
-            hash.add(condition.name).add(condition.value);
+            hash.add(condition.name);
+            number(condition.value);
         }
         if (response.curve) {
             const tables::CurveAsked& asked = *response.curve;
-            hash.add(tables::to_string(asked.curve))
-                .add(asked.net_weight.value_or(std::nan("")))
-                .add(asked.virtual_mass);
-            hash.add(asked.about).add(asked.restoring ? 1.0 : 0.0).add(asked.most_moment).add(asked.moment);
+            hash.add(tables::to_string(asked.curve)).add(asked.net_weight ? "weight" : "no weight").add(asked.moment);
+            numbers("numbers of a curve", std::array{asked.net_weight.value_or(0), asked.virtual_mass, asked.about,
+                                                     asked.restoring ? 1.0 : 0.0, asked.most_moment});
         }
-    };
-    for (const auto& objective : spec_.objectives) {
-        add(objective.response);
-    }
-    for (const auto& limit : spec_.limits) {
-        add(limit.response);
     }
     return hash.digest().substr(0, 12);
 }

@@ -134,7 +134,7 @@ std::optional<WeightedSums> weighted_sums(const std::vector<Weights>& sums, cons
 }
 
 /// Of the curves through a design's own runs, as `table equilibria` goes through such points.
-std::optional<ResponseValue> computed_curve(const OwnRuns& own, std::map<std::string, double> at,
+std::optional<ResponseValue> computed_curve(const Design& design, const OwnRuns& own, std::map<std::string, double> at,
                                             const tables::CurveAsked& asked) {
     constexpr std::size_t fewest = 3;
     const auto along = asked.runs_over();
@@ -157,7 +157,9 @@ std::optional<ResponseValue> computed_curve(const OwnRuns& own, std::map<std::st
         }
     }
     for (const std::string& condition : along) {
-        if (nodes(condition).size() < fewest) {
+        const auto own_nodes = nodes(condition);
+        const auto& asked_nodes = condition == "gap" ? design.spec().gaps : design.spec().pitches;
+        if (own_nodes.size() < std::max(fewest, asked_nodes.size())) {  // a part of the curve is no curve
             return {};
         }
     }
@@ -201,7 +203,9 @@ std::string missing_words(const Design& design, const PlannedDesign& planned) {
 }  // namespace
 
 double ProofOfResponse::difference_in_sigmas() const {
-    const double joint = computed ? std::hypot(predicted.sigma, computed->sigma) : 0;
+    // By how much a number of curves is missed is told in shares of what was known at that time.
+    const bool missed = of_curves && computed && std::min(predicted.value, computed->value) < 0;
+    const double joint = computed && !missed ? std::hypot(predicted.sigma, computed->sigma) : 0;
     return joint > 0 ? (computed->value - predicted.value) / joint : std::nan("");
 }
 
@@ -213,7 +217,7 @@ std::optional<ResponseValue> computed_response(const Design& design, const std::
         at[condition.name] = condition.value;
     }
     if (response.curve) {
-        return computed_curve(own, std::move(at), *response.curve);
+        return computed_curve(design, own, std::move(at), *response.curve);
     }
     std::map<const DesignRun*, double> weights;
     if (response.slope_along.empty()) {

@@ -19,7 +19,8 @@ struct ProofOfResponse {
     /// that of the runs. Nothing where they do not reach, or are not all there.
     std::optional<tables::ResponseValue> computed;
     bool of_curves = false;  ///< of three gaps or pitches at least; below zero: there is none
-    /// Their difference over the joint sigma; NaN where nothing is computed or no error is known.
+    /// Their difference over the joint sigma; NaN where nothing is computed, no error is known, or one of both says of
+    /// a number of curves that there is none.
     [[nodiscard]] double difference_in_sigmas() const;
 };
 

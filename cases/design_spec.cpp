@@ -181,17 +181,23 @@ void read_fidelities(const TomlTable& design, DesignSpec& spec) {
 
 }  // namespace
 
+std::vector<ComputedCondition> DesignSpec::conditions() const {
+    std::vector<ComputedCondition> all{
+        {"gap", "m", gaps, true}, {"pitch", "rad", pitches, false}, {"speed", "m/s", speeds, true}};
+    if (jet.any()) {
+        all.push_back({jet.quantity, jet.unit(), jet.values, false});
+    }
+    return all;
+}
+
 std::vector<tables::SearchVariable> DesignSpec::all_variables() const {
     std::vector<tables::SearchVariable> all = variables;
-    const auto add = [&](const char* name, const char* unit, const std::vector<double>& values, bool logarithmic) {
-        if (values.size() > 1) {
-            all.push_back({name, unit, values.front(), values.back(), logarithmic && values.front() > 0, false});
+    for (const ComputedCondition& c : conditions()) {
+        if (c.values.size() > 1) {
+            const bool logarithmic = c.logarithmic && c.values.front() > 0;
+            all.push_back({c.name, c.unit, c.values.front(), c.values.back(), logarithmic, false});
         }
-    };
-    add("gap", "m", gaps, true);
-    add("pitch", "rad", pitches, false);
-    add("speed", "m/s", speeds, true);
-    add(jet.quantity.c_str(), jet.unit().c_str(), jet.values, false);
+    }
     return all;
 }
 

@@ -22,6 +22,13 @@ struct FidelitySpec {
     double cost = 1;  ///< core-seconds of a case
 };
 
+/// Something that every design is computed at.
+struct ComputedCondition {
+    std::string name, unit;      ///< "gap", "m"; "pitch", "rad"; "speed", "m/s"; "jet_flow" or "jet_voltage"
+    std::vector<double> values;  ///< SI, ascending
+    bool logarithmic = false;    ///< learned over its logarithm, where it is above zero
+};
+
 struct DesignSpec {
     std::filesystem::path shape;   ///< the file that is varied
     std::filesystem::path folder;  ///< of plan, shapes, runs and results
@@ -42,6 +49,8 @@ struct DesignSpec {
     double least_volume = 0, most_volume = 1e300;  ///< [design.volume], m^3: of the body, known without a run
     std::vector<core::Place> objective_places, limit_places;  ///< in study.toml
 
+    /// Gap, pitch, speed and, with one, the jet.
+    [[nodiscard]] std::vector<ComputedCondition> conditions() const;
     /// Variables of the surrogates: those of the shape, then the conditions that take several values.
     [[nodiscard]] std::vector<tables::SearchVariable> all_variables() const;
     /// Of objectives, then of limits; one that is both stands once.

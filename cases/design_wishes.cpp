@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "cases/asked_points.h"
 #include "cases/design_curves.h"
 #include "core/angle.h"
 #include "core/error.h"
@@ -23,16 +24,11 @@ const std::vector<std::string> senses = {"minimise", "maximise"};
 
 /// A condition of which [design] has one value need not be said; where it is said, it is that one.
 void drop_the_only_values(tables::Response& r, const DesignSpec& spec) {
-    const auto only = [&](const char* name, const std::vector<double>& values) {
-        std::erase_if(r.conditions, [&](const auto& c) {
-            return c.name == name && values.size() == 1 &&
-                   std::abs(c.value - values.front()) <= 1e-9 * std::abs(values.front());
+    for (const auto& [name, value] : only_values(spec)) {
+        std::erase_if(r.conditions, [&, name = name, value = value](const auto& c) {
+            return c.name == name && std::abs(c.value - value) <= 1e-9 * std::abs(value);
         });
-    };
-    only("gap", spec.gaps);
-    only("pitch", spec.pitches);
-    only("speed", spec.speeds);
-    only(spec.jet.quantity.c_str(), spec.jet.values);
+    }
 }
 
 /// A response with the conditions of `at`; conditions that have one value need not be said.
@@ -209,12 +205,7 @@ void read_wishes(const TomlTable& design, DesignSpec& spec) {
 }
 
 void check_responses(const DesignSpec& spec) {
-    std::vector<tables::SearchVariable> conditions;
-    for (const auto& v : spec.all_variables()) {
-        if (!v.of_shape) {
-            conditions.push_back(v);
-        }
-    }
+    const std::vector<tables::SearchVariable> conditions = conditions_of(spec);
     for (std::size_t i = 0; i < spec.objectives.size(); ++i) {
         check_response(spec.objectives[i].response, conditions, spec.objective_places[i]);
     }
@@ -240,15 +231,10 @@ std::vector<tables::Response> DesignSpec::responses() const {
 }
 
 std::string response_unit(const tables::Response& response) {
-    if (response.curve) {
-        return tables::unit_of(response.curve->curve);
-    }
-    const std::string unit = core::find_quantity(response.quantity)->unit;
-    if (response.slope_along.empty()) {
-        return unit;
-    }
-    const auto* along = core::find_quantity(response.slope_along);
-    return along == nullptr || along->unit == "1" ? unit : tables::unit_per(unit, along->unit);
+    return tables::response_unit(response, [](const std::string& name) {
+        const auto* known = core::find_quantity(name);
+        return known == nullptr ? std::string("1") : known->unit;
+    });
 }
 
 }  // namespace underbody::cases

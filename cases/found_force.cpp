@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/accept.h"
 #include "core/file.h"
 #include "core/hash.h"
 #include "surrogates/dynamics/model/force_tables.h"
@@ -67,8 +68,7 @@ std::optional<FoundForce> found_force(const Study& study, const StudyResults& re
                                       const std::set<std::string>& accepted) {
     std::optional<core::Table> points;
     for (const auto& one : study.measurements) {
-        const bool written = fs::absolute(one.model).lexically_normal() ==
-                             fs::absolute(study.folder() / "models" / one.name / "model.toml").lexically_normal();
+        const bool written = same_place(one.model, study.folder() / accepted_model(one.name));
         if (!written && !accepted.contains(one.name)) {
             continue;
         }
@@ -92,7 +92,7 @@ tables::ForceTable table_of_found(const FoundForce& found, const TableSpec& spec
         options.axes.push_back({axis, {}, {}});
     }
     auto model = dynamics::read_model(found.model);
-    model.name = "models/" + found.measurement + "/model.toml";  // where it is written, wherever it lies now
+    model.name = accepted_model(found.measurement).generic_string();  // where it is written, wherever it lies now
     auto made = dynamics::force_tables(model, options, progress);
     return std::move(made.tables.front());
 }

@@ -70,10 +70,13 @@ Proof prove_export(const std::vector<tables::ForceTable>& tables, tables::Export
     proof.equal = compared.code == 0;
     proof.points = points_proved;
     const std::string off = between(compared.said, "a value by ", " at most");  // "2.22e-16", "1 units"
+    const std::string unit = options.fixed_point  ? " in the last place"
+                             : tables.size() == 1 ? " " + tables.front().unit()
+                                                  : " of their units";
     proof.sentence =
         proof.equal ? "Compiled, run and equal: value, slope and error at 10,000 points, within the table and beyond; "
                       "values differ by at most " +
-                          off + (options.fixed_point ? " in the last place" : " " + tables.front().unit())
+                          off + unit
                     : "NOT equal: " + (compared.said.empty() ? "it did not end" : compared.said);
     return proof;
 }

@@ -282,10 +282,15 @@ Quantity parse_quantity(std::string_view text, const Place& place) {
                          "write a number, a blank and a unit, such as '5 mm'");
     }
     if (end + 1 < whole.size() && whole[end] == ',' && whole[end + 1] >= '0' && whole[end + 1] <= '9') {
-        std::string right(whole);
-        right[end] = '.';
-        throw InputError("parse", "'" + std::string(whole) + "' is a number with a decimal comma", place,
-                         "write it with '.' as decimal point: " + right);
+        std::string decimal(whole), thousands(whole);
+        decimal[end] = '.';
+        thousands.erase(end, 1);
+        const auto digits = std::min(whole.find_first_not_of("0123456789", end + 1), whole.size()) - end - 1;
+        constexpr std::size_t of_thousands = 3;
+        throw InputError(
+            "parse", "'" + std::string(whole) + "' is a number with a decimal comma", place,
+            "write it with '.' as decimal point: " + decimal +
+                (digits == of_thousands ? ", or, if the comma parts thousands, without: " + thousands : ""));
     }
     const std::string unit(trimmed(whole.substr(end)));
     if (!unit.empty() && !is_unit(unit)) {

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "cases/design.h"
+#include "core/angle.h"
 #include "core/file.h"
 #include "core/own_files.h"
+#include "core/text.h"
 
 namespace underbody::cases::design_search {
 
@@ -100,20 +102,26 @@ protected:
 
     /// What another solver would put there: every design at every condition.
     void compute(const Design& design, bool leave_out_last = false) const {
+        compute(design, {3, 5, 10}, {-1, 1}, lift, 0.0005, leave_out_last);
+    }
+    /// Gaps in mm, pitches in degrees, `sigma` of the lift in N.
+    void compute(const Design& design, const std::vector<double>& gaps, const std::vector<double>& pitches,
+                 double (*lift_of)(double, double, double, double), double sigma, bool leave_out_last = false) const {
         std::string csv =
-            "design,protrusion.height [mm],body.base_cut [1],gap [mm],pitch [deg],fidelity,lift_force "
+            "design,protrusion.height [m],body.base_cut [1],gap [mm],pitch [deg],fidelity,lift_force "
             "[N],lift_force_sigma [N],"
             "pitch_moment [N m],pitch_moment_sigma [N m],state\n";
         std::size_t index = 0;
         for (const PlannedDesign& d : design.plan()) {
             const bool failed = leave_out_last && ++index == design.plan().size();
-            for (const double gap : {3.0, 5.0, 10.0}) {
-                for (const double pitch : {-1.0, 1.0}) {
-                    const double a = pitch * M_PI / 180;
-                    csv += d.name + "," + std::to_string(1e3 * d.at[0]) + "," + std::to_string(d.at[1]) + "," +
+            for (const double gap : gaps) {
+                for (const double pitch : pitches) {
+                    const double a = pitch * core::degree;
+                    csv += d.name + "," + core::format_number(d.at[0]) + "," + core::format_number(d.at[1]) + "," +
                            std::to_string(gap) + "," + std::to_string(pitch) + "," + d.fidelity + ",";
                     csv += failed ? ",,,,diverged\n"
-                                  : std::to_string(lift(d.at[0], d.at[1], gap / 1e3, a)) + ",0.0005," +
+                                  : std::to_string(lift_of(d.at[0], d.at[1], gap / 1e3, a)) + "," +
+                                        core::format_number(sigma) + "," +
                                         std::to_string(moment(d.at[0], d.at[1], gap / 1e3, a)) + ",0.00001,solved\n";
                 }
             }

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/own_files.h"
+#include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/search/limits_alone.h"
 #include "tests/cases/design_files.h"
@@ -129,8 +130,10 @@ TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
     compute(design);
     const fs::path file = folder_.path() / "design" / "results.csv";
     std::string text = core::read_file(file);
-    const std::size_t first = text.find(",0.0005,");
-    text.replace(first, 8, ",-0.0005,");
+    const std::string stated = "," + core::format_number(0.0005) + ",";
+    const std::size_t first = text.find(stated);
+    ASSERT_NE(first, std::string::npos);
+    text.insert(first + 1, "-");
     core::write_file(file, text);
     try {
         (void)open();
@@ -139,7 +142,7 @@ TEST_F(DesignFiles, AnUnknownStandardDeviationStaysUnknown) {
         EXPECT_THAT(error.what(), testing::HasSubstr("results.csv:2"));
         EXPECT_THAT(error.what(), testing::HasSubstr("-0.0005: below nought"));
     }
-    text.replace(first, 9, ",,");
+    text.replace(first, stated.size() + 1, ",,");
     core::write_file(file, text);
     const Design known = open();
     EXPECT_FALSE(known.runs().front().sigmas.contains("lift_force"));

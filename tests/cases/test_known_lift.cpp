@@ -8,9 +8,13 @@
 #include "cases/known_lift.h"
 #include "core/file.h"
 #include "geometry/body/variants.h"
+#include "tests/cases/design_files.h"
 
 namespace underbody::cases {
 namespace {
+
+using design_search::lift;
+using design_search::shape_toml;
 
 constexpr const char* study_toml = R"(
 title = "search"
@@ -50,23 +54,6 @@ sense = "maximise"
 at = { gap = "5 mm" }
 )";
 
-constexpr const char* shape_toml = R"(
-[body]
-length = "203.2 mm"
-width = "152 mm"
-height = "145 mm"
-base_cut = 0.75
-[protrusion]
-position = 0.8
-height = "1 mm"
-length = "20 mm"
-)";
-
-/// A smooth law in place of a solver.
-double lift(double height, double cut, double gap) {
-    return 0.3 * std::pow(gap / 5e-3, -0.5) * (1 + 60 * height - std::pow((cut - 0.72) / 0.1, 2) * 0.3);
-}
-
 class KnownLiftOfShapes : public testing::Test {
 protected:
     KnownLiftOfShapes() {
@@ -86,7 +73,7 @@ protected:
             for (const double gap : {3.0, 5.0, 10.0}) {
                 csv += d.name + "," + std::to_string(1e3 * d.at[0]) + "," + std::to_string(d.at[1]) + "," +
                        std::to_string(gap) + "," + d.fidelity + "," +
-                       std::to_string(lift(d.at[0], d.at[1], gap / 1e3)) + ",0.0005,solved\n";
+                       std::to_string(lift(d.at[0], d.at[1], gap / 1e3, 0)) + ",0.0005,solved\n";
             }
         }
         core::write_file(folder_.path() / "design" / "results.csv", csv);
@@ -150,7 +137,7 @@ TEST_F(KnownLiftOfShapes, TheCurveOfTheSearchFollowsTheLawWithinItsBand) {
     const auto& curve = figure.curves.front();
     const auto& band = figure.bands.front();
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
-        const double truth = lift(1e-3, 0.7, 1e-3 * curve.x[i]);
+        const double truth = lift(1e-3, 0.7, 1e-3 * curve.x[i], 0);
         const double half = 0.5 * (band.upper[i] - band.lower[i]);
         EXPECT_NEAR(curve.y[i], truth, std::max(2 * half, 0.01)) << "at " << curve.x[i] << " mm";
     }

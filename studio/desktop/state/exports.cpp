@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cases/accept.h"
 #include "cases/engine.h"
 #include "cases/export_files.h"
 #include "cases/found_force.h"
@@ -186,7 +187,7 @@ TableOfStudy table_of_study(const Session& session, const std::string& table) {
     }
     found.name = table;
     if (const auto force = found_of(session, *spec)) {
-        const auto written = session.folder / "models" / force->measurement / "model.toml";
+        const auto written = session.folder / cases::accepted_model(force->measurement);
         found.file = written.string();
         found.found = force->effects + ", found of '" + force->measurement + "'";
         if (session.accepted.contains(force->measurement)) {

@@ -166,7 +166,7 @@ void StaticLoop::guard() {
     }
     rest_in_noise_ = std::sqrt(std::max(0.0, std::pow(held_out_errors(uses_).rmse(), 2) - 1));
     result_.none_probability = attribution_.none_probability;
-    if (!result_.rest.is_noise) {
+    if (!result_.rest.is_noise && !result_.rest.or_noise_figure) {
         result_.rest.depends_on = result_.verdict == "effect" ? rest_.variables : whole_.variables;
     }
 }

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <ctime>
 #include <numeric>
+#include <utility>
 
 #include "core/counted.h"
 #include "core/no_limit.h"
+#include "core/quantile.h"
 #include "core/text.h"
 
 namespace underbody::dynamics {
@@ -35,12 +37,7 @@ double usual_step(const std::vector<double>& time) {
             steps.push_back(time[i] - time[i - 1]);
         }
     }
-    if (steps.empty()) {
-        return 0;
-    }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    return *middle;
+    return steps.empty() ? 0 : core::median(std::move(steps));
 }
 
 std::vector<Piece> cut(const std::vector<double>& time, double usual, bool at_pauses) {
@@ -74,10 +71,11 @@ bool long_enough(const Piece& piece, std::size_t longest) {
 }
 
 bool too_much_left_out(const std::vector<Piece>& pieces) {
+    const std::size_t most = longest(pieces);
     std::size_t left_out = 0, all = 0;
     for (const Piece& piece : pieces) {
         all += piece.rows();
-        left_out += long_enough(piece, longest(pieces)) ? 0 : piece.rows();
+        left_out += long_enough(piece, most) ? 0 : piece.rows();
     }
     return static_cast<double>(left_out) > most_left_out * static_cast<double>(all);
 }
@@ -170,13 +168,14 @@ std::vector<MeasuredRun> pieces_of(const MeasuredRun& run, core::Problems& probl
     if (pieces.size() == 1) {
         return {run};
     }
+    const std::size_t most = longest(pieces);
     std::vector<MeasuredRun> runs;
     double offset = 0;
     for (const Piece& piece : pieces) {
         if (piece.cut == Cut::set_on || piece.cut == Cut::set_back) {
             offset += time[piece.first] - time[piece.first - 1] - usual;
         }
-        const bool kept = long_enough(piece, longest(pieces));
+        const bool kept = long_enough(piece, most);
         const core::Place place = run.table.place(piece.first, "time");
         if (piece.cut != Cut::begin) {
             problems.push_back(

@@ -347,21 +347,28 @@ core::Table table(const DesignSearch& search, const std::vector<Candidate>& cand
     return result;
 }
 
-std::string DesignSearch::unit_of(const Response& response) const {
+std::string response_unit(const Response& response, const std::function<std::string(const std::string&)>& unit_of) {
     if (response.curve) {
         return tables::unit_of(response.curve->curve);
     }
-    const Bound bound = bind(response);
-    const std::string& unit = bound.surrogate->unit();
-    if (response.slope_along.empty()) {
-        return unit;
-    }
-    for (const SearchVariable& v : bound.surrogate->variables()) {
-        if (v.name == response.slope_along) {
-            return v.unit == "1" ? unit : unit_per(unit, v.unit);
+    const std::string unit = unit_of(response.quantity);
+    const std::string along = response.slope_along.empty() ? "1" : unit_of(response.slope_along);
+    return along == "1" ? unit : unit_per(unit, along);
+}
+
+std::string DesignSearch::unit_of(const Response& response) const {
+    return response_unit(response, [&](const std::string& name) -> std::string {
+        const Surrogate& surrogate = *bind(response).surrogate;
+        if (name == response.quantity) {
+            return surrogate.unit();
         }
-    }
-    return unit;
+        for (const SearchVariable& v : surrogate.variables()) {
+            if (v.name == name) {
+                return v.unit;
+            }
+        }
+        return "1";
+    });
 }
 
 }  // namespace underbody::tables

@@ -64,6 +64,10 @@ struct SearchProblem {
     std::vector<std::function<double(std::span<const double>)>> known_limits;
 };
 
+/// The SI unit of a response: a slope's is that of the quantity over that of the condition, a curve's its own.
+/// `unit_of`: of a quantity or a condition ("1": none, or not known).
+std::string response_unit(const Response& response, const std::function<std::string(const std::string&)>& unit_of);
+
 /// What a response is for a design: value and one sigma, SI. Of curves sigma is the root mean square distance to the
 /// value of the numbers of curves drawn whole from the surrogates' errors, different quantities independently.
 struct ResponseValue {
