@@ -81,7 +81,7 @@ std::string answer(int from) {
 
 }  // namespace
 
-VirtualDisplay::VirtualDisplay(int width, int height) {
+VirtualDisplay::VirtualDisplay(int width, int height, bool glx) {
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
         throw SystemError("display", std::string("no pipe: ") + std::strerror(errno));
@@ -89,7 +89,7 @@ VirtualDisplay::VirtualDisplay(int width, int height) {
     std::vector<std::string> words = {
         "Xvfb",      "-displayfd", "3",
         "-screen",   "0",          std::to_string(width) + "x" + std::to_string(height) + "x24",
-        "-nolisten", "tcp",        "+extension",
+        "-nolisten", "tcp",        glx ? "+extension" : "-extension",
         "GLX",       "-noreset"};
     std::vector<char*> argv;
     for (auto& word : words) {

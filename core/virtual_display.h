@@ -9,7 +9,8 @@ namespace underbody::core {
 class VirtualDisplay {
 public:
     /// Throws core::SystemError (kind "display") with a hint when Xvfb is not installed or does not answer within 20 s.
-    explicit VirtualDisplay(int width = 1600, int height = 1200);
+    /// `glx` false: it cannot draw by OpenGL, as some displays of users cannot.
+    explicit VirtualDisplay(int width = 1600, int height = 1200, bool glx = true);
     ~VirtualDisplay();
     VirtualDisplay(const VirtualDisplay&) = delete;
     VirtualDisplay& operator=(const VirtualDisplay&) = delete;

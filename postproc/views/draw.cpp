@@ -31,6 +31,7 @@
 #include "core/virtual_display.h"
 #include "postproc/field/vector_math.h"
 #include "postproc/views/colours.h"
+#include "postproc/views/display_draws.h"
 #include "postproc/views/draw_overlay.h"
 
 namespace underbody::postproc {
@@ -53,7 +54,7 @@ public:
     }
     void ensure() {
         const std::lock_guard lock(mutex_);
-        if (own_ != nullptr || core::display_answers()) {
+        if (own_ != nullptr || display_draws()) {
             return;
         }
         own_ = std::make_unique<core::VirtualDisplay>(1600, 1200);

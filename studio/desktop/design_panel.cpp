@@ -85,12 +85,6 @@ void DesignPanel::build() {
 
 /// With the first body: an empty window needs no OpenGL, whose software renderer takes 70 MB.
 void DesignPanel::make_scene() {
-    if (!Scene::possible()) {
-        auto* why = new QLabel("The 3D view needs OpenGL 3.2, which this display does not offer.");
-        why->setWordWrap(true);
-        body_place_->addWidget(why);
-        return;
-    }
     scene_ = std::make_unique<Scene>(body_place_->parentWidget());
     scene_->widget()->installEventFilter(this);
     scene_->on_hover = scene_->on_pick = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
@@ -244,11 +238,10 @@ void DesignPanel::draw_again(bool fresh) {
             rest_->start();
         }
     } else {
-        show_card();
         draw_section();
-        show_view();
+        show_view(false);
     }
-    show_lift();
+    show_lift();  // and the card
 }
 
 /// One at a time, and the newest next: a slow body is not asked for twice.
@@ -342,11 +335,12 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
         scene_->set_moving(!body->certificate);
         scene_->show(body->drawn, first);
         scene_->colour_by({}, {0, 1});
-        if (!fitted_view_ && !turned_) {  // the first ones come while the window still gives everything its place
+        if (!fitted_view_ &&
+            !state().design.turned) {  // the first ones come while the window still gives everything its place
             fit_view();
             fitted_view_ = body->certificate.has_value();
         }
-        show_view();
+        show_view(true);
     }
     draw_section();
     show_card();
@@ -378,11 +372,10 @@ void DesignPanel::fit_view() { scene_->look_from("iso", "+x", "+z"); }
 
 /// A view that nobody has turned shows the body as large as its place lets it.
 bool DesignPanel::eventFilter(QObject* watched, QEvent* event) {
-    if (event->type() == QEvent::MouseButtonPress || event->type() == QEvent::Wheel) {
-        turned_ = turned_ || (scene_ && watched == scene_->widget());
-    } else if (event->type() == QEvent::Resize && !turned_ && shown_) {
-        QTimer::singleShot(0, this, [this] {
-            if (!turned_ && scene_) {
+    const auto untouched = [this] { return scene_ && !state().design.turned && !scene_->in_hand(); };
+    if (event->type() == QEvent::Resize && shown_ && untouched()) {
+        QTimer::singleShot(0, this, [this, untouched] {
+            if (untouched()) {
                 fit_view();
                 scene_->render();
             }

@@ -100,7 +100,7 @@ private:
     void fit_view();
     void build_view_tools();
     void keep_turns();
-    void show_view();
+    void show_view(bool other_body);
     void draw_section();
     void show_card();
     [[nodiscard]] std::vector<std::array<QString, 2>> lift_rows() const;
@@ -139,6 +139,8 @@ private:
     std::string rest_of_;  ///< key of the body that "design rest" makes
     QTimer* rest_ = nullptr;
     cases::KnownLift lift_;
+    std::vector<cases::NamedShape> named_;  ///< the study's shapes, and whether its cases are of them
+    SessionPointer named_of_;
     std::shared_ptr<const cases::LearnedLoads> surrogate_;
     std::string no_surrogate_;  ///< why the study's search gives none
     SessionPointer learned_;    ///< that the surrogate is of
@@ -153,7 +155,6 @@ private:
     std::unique_ptr<Scene> scene_;  ///< none before the first body
     QVBoxLayout* body_place_ = nullptr;
     bool fitted_view_ = false;           ///< to a whole body
-    bool turned_ = false;                ///< by hand: the camera is not fitted any more
     std::optional<ViewPose> seen_from_;  ///< what of the state the view shows
     QToolButton* outline_ = nullptr;
     QToolButton* fit_ = nullptr;

@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QTableWidget>
 #include <cmath>
+#include <utility>
 
 #include "cases/body_of_case.h"
 #include "core/text.h"
@@ -161,7 +162,7 @@ void DesignPanel::make_before() {
                         before_ = body;
                         show_card();
                         draw_section();
-                        show_view();
+                        show_view(false);
                     };
                 },
                 true);
@@ -198,12 +199,14 @@ void DesignPanel::learn() {
 
 void DesignPanel::show_lift() {
     learn();
-    std::vector<cases::NamedShape> shapes;
-    for (const auto& [name, shape] : session().shapes) {
-        shapes.push_back({name, session().shape_files.at(name), shape,
-                          cases::is_of_its_cases(session().study, session().results, name)});
+    if (std::exchange(named_of_, desk_.session_pointer()) != desk_.session_pointer()) {
+        named_.clear();
+        for (const auto& [name, shape] : session().shapes) {
+            named_.push_back({name, session().shape_files.at(name), shape,
+                              cases::is_of_its_cases(session().study, session().results, name)});
+        }
     }
-    lift_ = cases::known_lift(session().study, shapes, surrogate_.get(), shape_);
+    lift_ = cases::known_lift(session().study, named_, surrogate_.get(), shape_);
     lift_label_->setText("Lift: " + qt(lift_.words()) +
                          (no_surrogate_.empty() ? QString() : ". The search of [design]: " + qt(no_surrogate_)));
     const bool surrogate = lift_.basis == cases::KnownLift::Basis::surrogate;

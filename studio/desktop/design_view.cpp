@@ -31,23 +31,25 @@ void DesignPanel::keep_turns() {
     };
 }
 
-void DesignPanel::show_view() {
+void DesignPanel::show_view(bool other_body) {
     const DesignView& design = state().design;
     outline_->setChecked(design.outline);
     fit_->setEnabled(design.turned.has_value());
     if (!scene_ || !shown_) {
         return;
     }
-    scene_->outline(design.outline && before_ ? before_->drawn : nullptr);
+    bool other = scene_->outline(design.outline && before_ ? before_->drawn : nullptr) || other_body;
     if (design.turned != seen_from_) {
         seen_from_ = design.turned;
-        turned_ = design.turned.has_value();
+        other = true;
         fit_view();  // its projection, too
         if (design.turned) {
             scene_->set_pose(*design.turned);
         }
     }
-    scene_->render();
+    if (other) {
+        scene_->render();
+    }
 }
 
 }  // namespace underbody::studio

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/file.h"
+#include "studio/desktop/drawing_context.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/state/session_file.h"
 #include "studio/figures/render.h"
@@ -199,6 +200,7 @@ void Desk::keep_session() const {
 }
 
 void Desk::open(const fs::path& folder, bool run, const std::vector<Words>& then) {
+    DrawingContext::instance().begin();  // its views will want it
     const QString name = qt(folder.string());
     const bool ask_kept = log_ && !run && state().files.empty();
     jobs_.start(

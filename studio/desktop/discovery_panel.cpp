@@ -213,10 +213,7 @@ QString limits(const json& document) {
     return rows.isEmpty() ? QString() : "<p>" + html(text.heading) + "</p><ul>" + rows + "</ul>";
 }
 
-}  // namespace
-
-QString discovery_page(const std::string& text) {
-    const json document = json::parse(text, nullptr, false);
+QString page_of(const json& document) {
     if (!document.is_object()) {
         return "<p>The stored result cannot be read; compute it again (Ctrl+R).</p>";
     }
@@ -243,6 +240,10 @@ QString discovery_page(const std::string& text) {
     page += remarks(document, true);
     return page;
 }
+
+}  // namespace
+
+QString discovery_page(const std::string& text) { return page_of(json::parse(text, nullptr, false)); }
 
 DiscoveryPanel::DiscoveryPanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
     setObjectName("loop");
@@ -312,7 +313,7 @@ void DiscoveryPanel::show_measurement() {
         accept_->setEnabled(missing || accepted);
         write_->setEnabled(missing);
         page += accepted ? "<p><b>Accepted: the found model counts as the declared one.</b></p>" : "";
-        page += verdict ? discovery_page(*found) : QString();
+        page += verdict ? page_of(document) : QString();
     } else if (residual != nullptr && verdict) {
         for (const auto& sentence : list_in(json::parse(*residual, nullptr, false), "sentences")) {
             page += sentence.is_string() ? "<p>" + prose(html(sentence.get<std::string>())) + "</p>" : QString();
@@ -321,29 +322,58 @@ void DiscoveryPanel::show_measurement() {
         page += "<p>Not computed yet: Study &gt; Compute what changed (Ctrl+R).</p>";
     }
     drawn_for_ = page_->width();
-    // As if it were rolled: the bar comes with the pictures.
-    const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent);
-    const int width = std::min(std::max(300, drawn_for_ - bar - 24), 900);
-    for (const auto& [key, png] : session().results.pictures) {
-        if (!shows("pictures") || key.find(name) == std::string::npos ||
-            (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
-            continue;
-        }
-        QImage image = QImage::fromData(reinterpret_cast<const uchar*>(png.data()), static_cast<int>(png.size()));
-        if (const QColor ground = palette().base().color(); ground.lightness() < 128) {
-            image = on_dark(image, ground);
-        }
-        const QString url = "picture://" + QString::fromStdString(key).toHtmlEscaped();
-        page_->document()->addResource(
-            QTextDocument::ImageResource, QUrl(url),
-            image.scaledToWidth(qRound(width * devicePixelRatioF()), Qt::SmoothTransformation));
-        page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(width);
-    }
+    page += pictures_of(name);
     accept_->setText(accepted ? "&Take back" : "&Accept");
     const int rolled = name == shown_ ? page_->verticalScrollBar()->value() : 0;
     shown_ = name;
     page_->setHtml(page);
     page_->verticalScrollBar()->setValue(rolled);
+}
+
+/// Those that are fitted to the page as it is now; of another one they are made in a job, which shows the page again.
+QString DiscoveryPanel::pictures_of(const std::string& name) {
+    // As if it were rolled: the bar comes with the pictures.
+    const int bar = style()->pixelMetric(QStyle::PM_ScrollBarExtent);
+    const int width = std::min(std::max(300, drawn_for_ - bar - 24), 900);
+    const QColor ground = palette().base().color();
+    const Fitted wanted{desk_.session_pointer(), name, qRound(width * devicePixelRatioF()), ground};
+    if (!shows("pictures")) {
+        return {};
+    }
+    if (!(wanted == fitted_)) {
+        jobs_.start(
+            "loop pictures", "pictures of " + qt(name),
+            [this, wanted](core::Progress& progress) {
+                std::vector<std::pair<QString, QImage>> images;
+                for (const auto& [key, png] : wanted.session->results.pictures) {
+                    if (key.find(wanted.name) == std::string::npos ||
+                        (key.find("residual") == std::string::npos && key.find("discovery") == std::string::npos)) {
+                        continue;
+                    }
+                    progress.check();
+                    const auto* bytes = reinterpret_cast<const uchar*>(png.data());
+                    QImage image = QImage::fromData(bytes, static_cast<int>(png.size()));
+                    if (wanted.ground.lightness() < 128) {
+                        image = on_dark(image, wanted.ground);
+                    }
+                    images.emplace_back("picture://" + QString::fromStdString(key).toHtmlEscaped(),
+                                        image.scaledToWidth(wanted.pixels, Qt::SmoothTransformation));
+                }
+                return [this, wanted, images = std::move(images)] {
+                    fitted_ = wanted;
+                    images_ = images;
+                    show_measurement();
+                };
+            },
+            true);
+        return {};
+    }
+    QString page;
+    for (const auto& [url, image] : images_) {
+        page_->document()->addResource(QTextDocument::ImageResource, QUrl(url), image);
+        page += QString("<p><img src='%1' width='%2'></p>").arg(url).arg(width);
+    }
+    return page;
 }
 
 /// Its pictures are as wide as the page: another width, other pictures.

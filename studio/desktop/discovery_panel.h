@@ -1,6 +1,11 @@
 // What measurements say about the model: residual, verdict, error before and after, as the study's store holds them.
 #pragma once
 
+#include <QColor>
+#include <QImage>
+#include <utility>
+#include <vector>
+
 #include "studio/desktop/panel.h"
 
 class QComboBox;
@@ -30,9 +35,20 @@ protected:
     bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
+    /// What pictures are of, and the page that they are fitted to.
+    struct Fitted {
+        SessionPointer session;
+        std::string name;
+        int pixels = 0;  ///< across
+        QColor ground;
+        bool operator==(const Fitted&) const = default;
+    };
     void show_measurement();
-    std::string shown_;  ///< the measurement whose page it is
-    int drawn_for_ = 0;  ///< width of the page that its pictures are fitted to, px
+    QString pictures_of(const std::string& name);
+    Fitted fitted_;
+    std::vector<std::pair<QString, QImage>> images_;  ///< address in the page, and picture
+    std::string shown_;                               ///< the measurement whose page it is
+    int drawn_for_ = 0;                               ///< width of the page that its pictures are fitted to, px
     QComboBox* choice_ = nullptr;
     QPushButton* accept_ = nullptr;
     QPushButton* write_ = nullptr;

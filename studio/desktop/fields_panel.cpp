@@ -109,7 +109,6 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         column->addWidget(cell->title);
         cell->scene = std::make_unique<Scene>(cell->box);
         cell->scene->widget()->setMinimumSize(120, 100);
-        cell->scene->widget()->setVisible(Scene::possible());
         const std::size_t index = cells_.size();
         cell->scene->on_hover = [this](const Scene::Picked& found) { Q_EMIT remark(found.text); };
         cell->scene->on_pick = [this, index](const Scene::Picked& found) { picked(index, found); };

@@ -132,15 +132,10 @@ void FieldsPanel::show_pictures() {
         const bool as_picture = cell.ready && (views || (differences && i > 0));
         const bool failed = !cell.failed.isEmpty();
         const bool surface = !as_picture && !failed;
-        cell.scene->widget()->setVisible(surface && Scene::possible());
-        cell.picture->setVisible(!surface || !Scene::possible());
+        cell.scene->widget()->setVisible(surface);
+        cell.picture->setVisible(!surface);
         if (failed) {
             cell.picture->show_text(cell.failed);
-        } else if (surface && !Scene::possible()) {
-            cell.picture->show_text(
-                "The 3D view needs OpenGL 3.2, which this display does not offer; the numbers below and the pictures "
-                "of Show do not. On a server, start the program under Xvfb with the package libgl1-mesa-dri "
-                "installed.");
         }
         const QString less = as_picture && !views ? QString("  less the first") : as_picture ? QString() : cell.empty;
         cell.title->setText(cell.source.title + (failed ? QString("   (not read)") : less));

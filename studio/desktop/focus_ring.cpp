@@ -1,5 +1,6 @@
 #include "studio/desktop/focus_ring.h"
 
+#include <QAbstractScrollArea>
 #include <QApplication>
 #include <QEvent>
 #include <QPainter>
@@ -28,6 +29,12 @@ protected:
     }
 };
 
+/// Lists and tables have the mouse in a widget of their own.
+QWidget* pressed_in(QWidget* widget) {
+    auto* area = qobject_cast<QAbstractScrollArea*>(widget);
+    return area != nullptr ? area->viewport() : widget;
+}
+
 }  // namespace
 
 FocusRing::FocusRing(QObject* parent) : QObject(parent) {
@@ -39,21 +46,21 @@ QWidget* FocusRing::around() const { return ring_ ? ring_->parentWidget() : null
 void FocusRing::follow(QWidget* widget) {
     if (QWidget* before = around()) {
         before->removeEventFilter(this);
+        pressed_in(before)->removeEventFilter(this);
     }
     delete ring_;
     if (widget != nullptr && widget->window()->testAttribute(Qt::WA_KeyboardFocusChange)) {
         ring_ = new Ring(widget);
         widget->installEventFilter(this);
+        pressed_in(widget)->installEventFilter(this);
     }
 }
 
 bool FocusRing::eventFilter(QObject* watched, QEvent* event) {
-    if (ring_ && watched == ring_->parentWidget()) {
-        if (event->type() == QEvent::Resize) {
-            ring_->resize(ring_->parentWidget()->size());
-        } else if (event->type() == QEvent::MouseButtonPress) {
-            ring_->hide();  // the mouse is used
-        }
+    if (ring_ && event->type() == QEvent::MouseButtonPress) {
+        ring_->hide();  // the mouse is used
+    } else if (ring_ && watched == ring_->parentWidget() && event->type() == QEvent::Resize) {
+        ring_->resize(ring_->parentWidget()->size());
     }
     return QObject::eventFilter(watched, event);
 }

@@ -1,11 +1,9 @@
 // underbody-studio: the desktop.
-#include <QVTKOpenGLNativeWidget.h>
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <QFile>
 #include <QLibraryInfo>
-#include <QSurfaceFormat>
 #include <clocale>
 #include <cstdio>
 #include <memory>
@@ -148,7 +146,8 @@ int run(int argc, char** argv) {
     }
     QApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
-    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    ::setenv("QT_XCB_GL_INTEGRATION", "none",
+             0);  // the 3D views have VTK's: Qt need not load one with its first window
     Application application(argc, argv);
     // Qt takes the user's locale over; numbers in files must not change with it.
     std::setlocale(LC_NUMERIC, "C");

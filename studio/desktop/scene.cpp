@@ -5,9 +5,6 @@
 
 #include <QBuffer>
 #include <QImage>
-#include <QOffscreenSurface>
-#include <QOpenGLContext>
-#include <QOpenGLFunctions>
 #include <QTimer>
 #include <algorithm>
 #include <utility>
@@ -15,38 +12,6 @@
 #include "studio/desktop/scene_parts.h"
 
 namespace underbody::studio {
-
-namespace {
-
-struct Renderer {
-    bool possible = false, software = false;
-};
-
-/// Asked once, of a context that is not drawn with.
-const Renderer& renderer_of_display() {
-    static const Renderer found = [] {
-        QOpenGLContext context;
-        context.setFormat(QVTKOpenGLNativeWidget::defaultFormat());
-        QOffscreenSurface surface;
-        if (!context.create()) {
-            return Renderer{};
-        }
-        surface.setFormat(context.format());
-        surface.create();
-        if (!surface.isValid() || !context.makeCurrent(&surface) || context.format().majorVersion() < 3) {
-            return Renderer{};
-        }
-        const QByteArray name(reinterpret_cast<const char*>(context.functions()->glGetString(GL_RENDERER)));
-        return Renderer{true, name.contains("llvmpipe") || name.contains("softpipe")};
-    }();
-    return found;
-}
-
-}  // namespace
-
-bool Scene::possible() { return renderer_of_display().possible; }
-
-bool Scene::by_software() { return renderer_of_display().software; }
 
 namespace {
 
@@ -62,8 +27,7 @@ vtkSmartPointer<vtkPolyDataMapper> new_mapper(vtkLookupTable* colours) {
 
 Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     Parts& p = *parts_;
-    p.widget = new SceneWidget(parent);
-    p.widget->setRenderWindow(p.window);
+    p.widget = new SceneWidget(p.window, parent);
     p.window->AddRenderer(p.renderer);
     p.window->SetMultiSamples(samples_at_rest);
     p.renderer->SetBackground(1, 1, 1);
@@ -94,7 +58,7 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     p.rest.setInterval(200);
     QObject::connect(&p.rest, &QTimer::timeout, [&p] { p.ask_for_whole(); });
     p.soon.setSingleShot(true);
-    QObject::connect(&p.soon, &QTimer::timeout, [&p] { p.window->Render(); });
+    QObject::connect(&p.soon, &QTimer::timeout, [&p] { p.widget->draw(); });
     p.dress_dot();
     p.dress_rim();
 }
@@ -107,6 +71,7 @@ Scene::~Scene() {
     parts_->renderer->RemoveObserver(parts_->before_drawing);
     parts_->widget->removeEventFilter(parts_.get());
     parts_->window->GetInteractor()->RemoveObserver(parts_->on_turn);
+    parts_->window->GetInteractor()->RemoveObserver(parts_->on_ask);
 }
 
 QWidget* Scene::widget() const { return parts_->widget; }
@@ -165,6 +130,7 @@ void Scene::show(std::shared_ptr<const Prepared> prepared, bool refit) {
             p.picker->AddLocator(ready.locator);  // of both sides
         }
     }
+    show_edges(p.edges);
     mirror(p.mirrored);
     p.whole.reset();
     p.whole_of.clear();
@@ -189,6 +155,7 @@ void Scene::set_visible(const std::vector<bool>& zones) {
 bool Scene::visible(std::size_t zone) const { return zone < parts_->seen.size() && parts_->seen[zone]; }
 
 void Scene::show_edges(bool edges) {
+    parts_->edges = edges;
     for (const auto& surface : parts_->surfaces) {
         surface.actor->GetProperty()->SetEdgeVisibility(edges);
         surface.actor->GetProperty()->SetEdgeColor(0.25, 0.25, 0.25);
@@ -203,24 +170,15 @@ void Scene::mirror(bool on) {
     }
 }
 
-void Scene::render() {
-    if (possible() && parts_->widget->draws_everything()) {
-        parts_->soon.start(0);
-    }
-}
+void Scene::render() { parts_->soon.start(0); }
 
-bool Scene::has_drawn() const { return parts_->widget->has_drawn(); }
+bool Scene::has_drawn() const { return parts_->widget->pictures() > 0; }
 
 std::string Scene::png() {
-    parts_->widget->draw_at_once();
-    if (possible()) {
-        parts_->window->Render();
-    }
-    const QImage image = parts_->widget->grabFramebuffer();
     QByteArray bytes;
     QBuffer buffer(&bytes);
     buffer.open(QIODevice::WriteOnly);
-    image.save(&buffer, "PNG");
+    parts_->widget->picture().save(&buffer, "PNG");
     return bytes.toStdString();
 }
 

@@ -25,11 +25,6 @@ public:
     /// From where (x, y, z, m), at what (m), what is up, and half the height that is seen (m, without perspective).
     using Pose = std::array<double, 10>;
 
-    /// True when this machine can make an OpenGL context (asked once; VTK would abort without one).
-    static bool possible();
-    /// True where the processor draws, which takes four times as long for four samples a pixel.
-    static bool by_software();
-
     explicit Scene(QWidget* parent);
     ~Scene();
     Scene(const Scene&) = delete;
@@ -85,7 +80,8 @@ public:
     /// What is shown follows a hand: a software renderer then takes less care of edges.
     void set_moving(bool moving);
     /// Another body as a line around it, in front of everything; nullptr: none. Only drawn, never picked or fitted to.
-    void outline(const std::shared_ptr<const Prepared>& other);
+    /// True where it was another one before.
+    bool outline(const std::shared_ptr<const Prepared>& other);
     /// Of what is drawn (x from, to, y, z), empty when that is nothing.
     [[nodiscard]] std::optional<std::array<double, 6>> bounds() const;
 
@@ -109,6 +105,8 @@ public:
     std::function<void()> on_turn;
     /// Called once the hand that turned it, or its wheel, rests.
     std::function<void(const Pose&)> on_turned;
+    /// A hand turns it, or has just done so and `on_turned` was not called yet.
+    [[nodiscard]] bool in_hand() const;
 
     /// Of many faces a stand-in is turned; true while it is what is seen, until the picture of all of them is drawn.
     [[nodiscard]] bool stands_in() const;

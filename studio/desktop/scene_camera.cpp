@@ -1,13 +1,13 @@
 // The 3D view: from where it is seen, and how a hand turns it.
 #include <vtkCamera.h>
-#include <vtkInteractorStyleTrackballCamera.h>
-#include <vtkObjectFactory.h>
+#include <vtkInteractorObserver.h>
+#include <vtkMatrix4x4.h>
 #include <vtkRenderWindowInteractor.h>
 
-#include <QApplication>
 #include <algorithm>
 #include <cmath>
 
+#include "studio/desktop/drawing_context.h"
 #include "studio/desktop/scene_parts.h"
 
 namespace underbody::studio {
@@ -23,28 +23,21 @@ std::array<double, 3> direction(const std::string& axis, std::array<double, 3> f
     return result;
 }
 
-/// Turns the view by the mouse alone: VTK's keys (w: wireframe, s: surface, e: exit, ...) are not ours.
-class MouseStyle : public vtkInteractorStyleTrackballCamera {
-public:
-    static MouseStyle* New();
-    void OnChar() override {}
-    void OnKeyPress() override {}
-    void OnKeyDown() override {}
-};
-vtkStandardNewMacro(MouseStyle);
-
 constexpr double bar_room = 0.1;  ///< of half the width, for the colour bar on the right
 
 /// How far the picture may be enlarged until one of the places leaves it.
 double zoom_that_holds(vtkRenderer& renderer, const std::vector<std::array<double, 3>>& places) {
     constexpr double edge = 0.97;
     double zoom = 10;
+    const double* to_view = renderer.GetActiveCamera()
+                                ->GetCompositeProjectionTransformMatrix(renderer.GetTiledAspectRatio(), 0, 1)
+                                ->GetData();
     for (const auto& [x, y, z] : places) {
-        renderer.SetWorldPoint(x, y, z, 1);
-        renderer.WorldToView();
-        const double* at = renderer.GetViewPoint();  // from -1 to 1
-        zoom = std::min(
-            {zoom, (edge - bar_room) / std::max(1e-3, std::abs(at[0])), edge / std::max(1e-3, std::abs(at[1]))});
+        const std::array<double, 4> place = {x, y, z, 1};
+        std::array<double, 4> at{};  // from -1 to 1 times the last one
+        vtkMatrix4x4::MultiplyPoint(to_view, place.data(), at.data());
+        zoom = std::min({zoom, (edge - bar_room) / std::max(1e-3, std::abs(at[0] / at[3])),
+                         edge / std::max(1e-3, std::abs(at[1] / at[3]))});
     }
     return zoom;
 }
@@ -139,13 +132,21 @@ void Scene::set_pose(const Pose& pose) {
     parts_->renderer->ResetCameraClippingRange();
 }
 
-void Scene::set_moving(bool moving) { parts_->window->SetMultiSamples(moving && by_software() ? 0 : samples_at_rest); }
+bool Scene::in_hand() const { return parts_->holding || parts_->turned.isActive(); }
+
+void Scene::set_moving(bool moving) {
+    parts_->window->SetMultiSamples(moving && DrawingContext::instance().by_software() ? 0 : samples_at_rest);
+}
 
 /// Who follows while the view is turned is told of each step; who keeps it, when the hand rests: a wheel turns it step
 /// by step.
 void Scene::Parts::follow_hand() {
-    vtkNew<MouseStyle> style;
-    window->GetInteractor()->SetInteractorStyle(style);
+    auto* interactor = window->GetInteractor();
+    auto* style = interactor->GetInteractorStyle();
+    on_ask->SetClientData(this);
+    on_ask->SetCallback(
+        [](vtkObject*, unsigned long, void* data, void*) { static_cast<Parts*>(data)->scene->render(); });
+    interactor->AddObserver(vtkCommand::RenderEvent, on_ask);
     on_turn->SetClientData(this);
     on_turn->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
         const auto& turned = static_cast<Parts*>(data)->scene->on_turn;
@@ -157,22 +158,25 @@ void Scene::Parts::follow_hand() {
     on_hold->SetClientData(this);
     on_hold->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
         auto& parts = *static_cast<Parts*>(data);
-        parts.scene->set_moving(event == vtkCommand::StartInteractionEvent);
-        if (event == vtkCommand::StartInteractionEvent) {
-            parts.held = parts.scene->pose();
-        } else if (parts.scene->pose() != parts.held) {  // not of a click
+        parts.holding = event == vtkCommand::StartInteractionEvent;
+        parts.scene->set_moving(parts.holding);
+        if (!parts.holding && parts.scene->pose() != parts.held) {  // not of a click
             parts.turned.start();
+        } else if (parts.holding && !parts.turned.isActive()) {  // else of a turn that nobody was told of yet
+            parts.held = parts.scene->pose();
         }
     });
     style->AddObserver(vtkCommand::StartInteractionEvent, on_hold);
     style->AddObserver(vtkCommand::EndInteractionEvent, on_hold);
     style->AddObserver(vtkCommand::InteractionEvent, on_turn);
-    window->GetInteractor()->AddObserver(vtkCommand::MouseWheelForwardEvent, on_turn);
-    window->GetInteractor()->AddObserver(vtkCommand::MouseWheelBackwardEvent, on_turn);
+    interactor->AddObserver(vtkCommand::MouseWheelForwardEvent, on_turn);
+    interactor->AddObserver(vtkCommand::MouseWheelBackwardEvent, on_turn);
     turned.setSingleShot(true);
     turned.setInterval(150);
     QObject::connect(&turned, &QTimer::timeout, [this] {
-        if (QApplication::mouseButtons() == Qt::NoButton && scene->on_turned) {
+        if (holding) {
+            turned.start();
+        } else if (scene->on_turned) {
             scene->on_turned(scene->pose());
         }
     });

@@ -28,10 +28,10 @@ void Scene::Parts::dress_rim() {
     renderer->AddActor(rim_actor);
 }
 
-void Scene::outline(const std::shared_ptr<const Prepared>& shown) {
+bool Scene::outline(const std::shared_ptr<const Prepared>& shown) {
     Parts& p = *parts_;
     if (p.outlined == shown) {
-        return;
+        return false;
     }
     p.outlined = shown;
     p.other->RemoveAllInputs();
@@ -41,6 +41,7 @@ void Scene::outline(const std::shared_ptr<const Prepared>& shown) {
     }
     p.rim_actor->GetProperty()->SetLineWidth(static_cast<float>(1.4 * p.widget->devicePixelRatioF()));
     p.rim_actor->SetVisibility(shown != nullptr);
+    return true;
 }
 
 }  // namespace underbody::studio

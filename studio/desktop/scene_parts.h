@@ -1,7 +1,6 @@
 // What the files of the 3D view share.
 #pragma once
 
-#include <QVTKOpenGLNativeWidget.h>
 #include <vtkActor.h>
 #include <vtkAppendPolyData.h>
 #include <vtkAxesActor.h>
@@ -27,6 +26,7 @@
 
 #include "postproc/loads/mirror_plane.h"
 #include "studio/desktop/scene.h"
+#include "studio/desktop/scene_widget.h"
 #include "studio/desktop/whole_picture.h"
 
 namespace underbody::studio {
@@ -43,30 +43,6 @@ struct Scene::Prepared {
         vtkSmartPointer<vtkStaticCellLocator> locator;  ///< of many faces: a click need not go through all
     };
     std::vector<Surface> surfaces;
-};
-
-/// A new OpenGL context draws in steps, each in a turn of the event loop of its own: one colour, the ground,
-/// everything. A software renderer compiles as it draws first (0.2 s), and what the user does is heard in between.
-class SceneWidget : public QVTKOpenGLNativeWidget {
-public:
-    using QVTKOpenGLNativeWidget::QVTKOpenGLNativeWidget;
-    /// For a picture that is wanted now.
-    void draw_at_once() { step_ = Step::everything; }
-    /// False while the first steps are under way, which end in drawing everything.
-    [[nodiscard]] bool draws_everything() const { return step_ == Step::everything; }
-    [[nodiscard]] bool has_drawn() const { return drawn_; }
-
-protected:
-    void initializeGL() override;
-    void paintGL() override;
-
-private:
-    enum class Step { colour, ground, everything };
-    void paint_colour();
-    void paint_ground();
-    void go_on(Step next);
-    Step step_ = Step::colour;
-    bool drawn_ = false;
 };
 
 struct Scene::Parts : QObject {
@@ -90,12 +66,13 @@ struct Scene::Parts : QObject {
     std::vector<Surface> surfaces;
     std::vector<bool> seen;
     Choice choice;
-    bool mirrored = false;
+    bool mirrored = false, edges = false;
     postproc::MirrorPlane mirror;  ///< of the prepared sides
     Scene* scene = nullptr;
-    vtkNew<vtkCallbackCommand> on_turn, on_hold;
+    vtkNew<vtkCallbackCommand> on_turn, on_hold, on_ask;
     QTimer hover, turned;
     Pose held{};  ///< as it was when a hand took hold of it
+    bool holding = false;
     void follow_hand();
     /// Of what is seen, both sides of a half model: at most some thousands.
     [[nodiscard]] std::vector<std::array<double, 3>> some_places() const;

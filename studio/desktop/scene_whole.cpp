@@ -6,6 +6,7 @@
 #include <QApplication>
 #include <algorithm>
 
+#include "studio/desktop/drawing_context.h"
 #include "studio/desktop/scene_parts.h"
 
 namespace underbody::studio {
@@ -21,7 +22,7 @@ WholePicture::Wanted Scene::Parts::wanted_whole() const {
     const int* size = window->GetSize();
     wanted.width = size[0];
     wanted.height = size[1];
-    wanted.by_software = Scene::by_software();
+    wanted.by_software = DrawingContext::instance().by_software();
     for (const auto& surface : surfaces) {
         if (!visible(surface)) {
             continue;
@@ -85,7 +86,7 @@ void Scene::Parts::ask_for_whole() {
         }
         whole_of = key;
         whole_drawn->SetInputData(image);
-        window->Render();
+        widget->draw();
     });
 }
 

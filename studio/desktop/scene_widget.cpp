@@ -1,71 +1,149 @@
-// The widget of the 3D view, and how it draws first.
-#include <vtkProp.h>
-#include <vtkPropCollection.h>
+#include "studio/desktop/scene_widget.h"
+
+#include <GL/gl.h>
+#include <QVTKInteractor.h>
+#include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLState.h>
+#include <vtkRenderer.h>
 #include <vtkRendererCollection.h>
 
-#include <QOpenGLContext>
-#include <QOpenGLFunctions>
+#include <QEvent>
+#include <QPainter>
+#include <array>
+#include <cmath>
 
-#include "studio/desktop/scene_parts.h"
+#include "studio/desktop/drawing_context.h"
 
 namespace underbody::studio {
 
-void SceneWidget::initializeGL() {
-    step_ = Step::colour;
-    QVTKOpenGLNativeWidget::initializeGL();
+namespace {
+
+constexpr int points_per_inch = 72;  ///< as Qt's widgets of VTK: letters are given in pixels
+
+QColor colour(const double* of) { return QColor::fromRgbF(of[0], of[1], of[2]); }
+
+}  // namespace
+
+SceneWidget::SceneWidget(vtkGenericOpenGLRenderWindow* window, QWidget* parent) : QWidget(parent), window_(window) {
+    setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+    setAttribute(Qt::WA_OpaquePaintEvent);
+    window_->SetReadyForRendering(false);
+    vtkNew<QVTKInteractor> interactor;
+    interactor->SetRenderWindow(window_);
+    interactor->Initialize();
+    interactor->EnableRenderOff();  // whoever turns the view asks for the next picture by its event
+    vtkNew<vtkInteractorStyleTrackballCamera> style;
+    interactor->SetInteractorStyle(style);
+    auto& context = DrawingContext::instance();
+    context.begin();
+    context.when_known(this, [this] { update(); });
 }
 
-void SceneWidget::paintGL() {
-    switch (step_) {
-        case Step::colour:
-            paint_colour();
-            return go_on(Step::ground);
-        case Step::ground:
-            paint_ground();
-            return go_on(Step::everything);
-        case Step::everything:
-            QVTKOpenGLNativeWidget::paintGL();
-            drawn_ = true;
+SceneWidget::~SceneWidget() {
+    if (served_) {
+        window_->MakeCurrent();
+        window_->Finalize();
+        window_->SetReadyForRendering(false);
     }
 }
 
-void SceneWidget::go_on(Step next) {
-    QTimer::singleShot(0, this, [this, next] {
-        step_ = std::max(step_, next);
-        if (step_ == Step::everything) {
-            renderWindow()->Render();
-        } else {
-            update();
-        }
-    });
+void SceneWidget::draw() {
+    stale_ = true;
+    if (isVisible()) {
+        draw_now();
+        update();
+    }
 }
 
-void SceneWidget::paint_colour() {
-    std::array<double, 3> colour{1, 1, 1};
-    if (auto* renderer = renderWindow()->GetRenderers()->GetFirstRenderer()) {
-        renderer->GetBackground(colour.data());
-    }
-    auto* gl = context()->functions();
-    gl->glClearColor(static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2]), 1);
-    gl->glClear(GL_COLOR_BUFFER_BIT);
+QImage SceneWidget::picture() {
+    DrawingContext::instance().wait();
+    draw_now();
+    return image_;
 }
 
-void SceneWidget::paint_ground() {
-    auto* renderers = renderWindow()->GetRenderers();
-    std::vector<vtkProp*> hidden;
-    for (int i = 0; i < renderers->GetNumberOfItems(); ++i) {
-        auto* props = static_cast<vtkRenderer*>(renderers->GetItemAsObject(i))->GetViewProps();
-        for (int k = 0; k < props->GetNumberOfItems(); ++k) {
-            auto* prop = static_cast<vtkProp*>(props->GetItemAsObject(k));
-            if (prop->GetVisibility() != 0) {
-                prop->VisibilityOff();
-                hidden.push_back(prop);
-            }
-        }
+/// To the widget's pixels.
+void SceneWidget::fit() {
+    const double ratio = devicePixelRatioF();
+    auto* interactor = window_->GetInteractor();
+    adapter_.SetDevicePixelRatio(static_cast<float>(ratio), interactor);
+    window_->SetDPI(static_cast<int>(std::lround(points_per_inch * ratio)));
+    interactor->UpdateSize(static_cast<int>(std::lround(width() * ratio)),
+                           static_cast<int>(std::lround(height() * ratio)));
+}
+
+void SceneWidget::draw_now() {
+    auto& context = DrawingContext::instance();
+    if (context.state() != DrawingContext::State::ready || width() < 1 || height() < 1) {
+        return;
     }
-    QVTKOpenGLNativeWidget::paintGL();
-    for (auto* prop : hidden) {
-        prop->VisibilityOn();
+    if (!served_) {
+        context.serve(*window_);
+        served_ = true;
+    }
+    fit();
+    window_->MakeCurrent();
+    // Another view drew in the same context since.
+    window_->GetState()->Reset();
+    window_->Render();
+    read();
+    stale_ = false;
+    seen_ = false;
+}
+
+void SceneWidget::read() {
+    const int* size = window_->GetSize();
+    QImage upside_down(size[0], size[1], QImage::Format_RGB32);
+    vtkOpenGLState* state = window_->GetState();
+    state->PushReadFramebufferBinding();
+    window_->GetDisplayFramebuffer()->Bind(GL_READ_FRAMEBUFFER);
+    window_->GetDisplayFramebuffer()->ActivateReadBuffer(0);
+    ::glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    ::glReadPixels(0, 0, size[0], size[1], GL_BGRA, GL_UNSIGNED_BYTE, upside_down.bits());
+    state->PopReadFramebufferBinding();
+    image_ = upside_down.mirrored();
+    image_.setDevicePixelRatio(devicePixelRatioF());
+}
+
+/// Keys are the window's: VTK's own (w: wireframe, s: surface, e: exit, ...) are not ours.
+bool SceneWidget::event(QEvent* event) {
+    const auto type = event->type();
+    if (type != QEvent::KeyPress && type != QEvent::KeyRelease) {
+        adapter_.ProcessEvent(event, window_->GetInteractor());
+    }
+    if (type == QEvent::Resize) {
+        fit();
+        stale_ = true;
+    }
+    return QWidget::event(event);
+}
+
+void SceneWidget::paintEvent(QPaintEvent* /*event*/) {
+    if (stale_ || image_.devicePixelRatioF() != devicePixelRatioF()) {
+        draw_now();
+    }
+    QPainter painter(this);
+    if (!image_.isNull()) {
+        painter.drawImage(0, 0, image_);
+        pictures_ += seen_ ? 0 : 1;
+        seen_ = true;
+        return;
+    }
+    auto* renderer = window_->GetRenderers()->GetFirstRenderer();
+    QLinearGradient ground(0, 0, 0, height());
+    if (renderer != nullptr) {
+        ground.setColorAt(0, colour(renderer->GetBackground2()));
+        ground.setColorAt(1, colour(renderer->GetBackground()));
+    }
+    painter.fillRect(rect(), ground);
+    if (DrawingContext::instance().state() == DrawingContext::State::impossible) {
+        painter.setPen(palette().color(QPalette::Text));
+        painter.drawText(rect().adjusted(12, 12, -12, -12), Qt::AlignCenter | Qt::TextWordWrap,
+                         "The 3D view needs OpenGL 3.2, which this display does not offer; numbers and the pictures of "
+                         "Show do not. On a server, start the program under Xvfb with the package libgl1-mesa-dri "
+                         "installed.");
     }
 }
 

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "studio/desktop/catalogue.h"
+#include "studio/desktop/drawing_context.h"
 #include "studio/desktop/jobs.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/panel.h"
@@ -19,6 +20,9 @@ namespace underbody::studio {
 
 /// Lets the window work until nothing runs beside it and it has drawn itself.
 void settle(MainWindow& window) {
+    if (auto& context = DrawingContext::instance(); context.state() == DrawingContext::State::coming) {
+        context.wait();
+    }
     QElapsedTimer waited;
     waited.start();
     int quiet = 0;

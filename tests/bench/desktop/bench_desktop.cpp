@@ -3,7 +3,6 @@
 // (default cases/evie). N: faces of the large surface (default 5,000,000; 0: left out). FOLDER: a computed study of
 // very many cases, as tests/bench/cases/bench_scaling.py makes them. FILE.stl: where the large surface is kept, which
 // side_by_side.py opens and turns beside ParaView.
-#include <QVTKOpenGLNativeWidget.h>
 #include <malloc.h>
 
 #include <QApplication>
@@ -11,7 +10,6 @@
 #include <QLineEdit>
 #include <QMouseEvent>
 #include <QScrollBar>
-#include <QSurfaceFormat>
 #include <QTest>
 #include <algorithm>
 #include <cstdio>
@@ -22,6 +20,7 @@
 #include "studio/desktop/fields_panel.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/parallel_view.h"
+#include "studio/desktop/scene_widget.h"
 #include "studio/desktop/screenshots.h"
 #include "studio/desktop/state/words.h"
 #include "studio/desktop/study_tree.h"
@@ -102,14 +101,12 @@ public:
 
     /// From a number that is changed to the body in its view, as a key on its slider changes it.
     void slider_to_pixels() {
-        QVTKOpenGLNativeWidget* view = nullptr;
+        SceneWidget* view = nullptr;
         auto& design = panel<DesignPanel>();
-        for (auto* one : design.findChildren<QVTKOpenGLNativeWidget*>()) {
+        for (auto* one : design.findChildren<SceneWidget*>()) {
             view = one;
         }
         std::vector<double> shown, drawn, used;
-        int frames = 0;
-        const auto counting = QObject::connect(view, &QOpenGLWidget::frameSwapped, [&frames] { ++frames; });
         for (int i = 0; i < 30; ++i) {
             QTest::qWait(40);  // a key that is held repeats every 33 to 40 ms
             const auto* before = design.shown().get();
@@ -119,12 +116,11 @@ public:
             window_.desk().act({"set", "protrusion.height=" + std::to_string(1 + 0.01 * i) + " mm"}, "keys");
             until([&] { return design.shown().get() != before; });
             shown.push_back(1e-6 * static_cast<double>(time.nsecsElapsed()));
-            const int seen = frames;
-            until([&] { return frames > seen; });
+            const int seen = view->pictures();
+            until([&] { return view->pictures() > seen; });
             drawn.push_back(1e-6 * static_cast<double>(time.nsecsElapsed()));
             used.push_back(1000 * (thread_time() - before_it));
         }
-        QObject::disconnect(counting);
         window_.desk().end_gesture();
         for (auto* times : {&shown, &drawn, &used}) {
             std::sort(times->begin(), times->end());
@@ -155,8 +151,8 @@ public:
         window_.take_files({file});
         auto& fields = panel<FieldsPanel>();
         say(std::to_string(count) + " faces to the first picture", until([&] { return fields.stands_in(0); }), "6000");
-        QVTKOpenGLNativeWidget* view = nullptr;
-        for (auto* one : fields.findChildren<QVTKOpenGLNativeWidget*>()) {
+        SceneWidget* view = nullptr;
+        for (auto* one : fields.findChildren<SceneWidget*>()) {
             view = one->isVisible() ? one : view;
         }
         say("  longest gap of the loop", beat_.take(), "100");
@@ -172,23 +168,22 @@ public:
         settle(window_);
     }
 
-    void turned(QVTKOpenGLNativeWidget& view) {
+    void turned(SceneWidget& view) {
         auto& fields = panel<FieldsPanel>();
         const QPoint middle = view.rect().center();
         QTest::mousePress(&view, Qt::LeftButton, Qt::NoModifier, middle);
-        int frames = 0;
-        const auto counting = QObject::connect(&view, &QOpenGLWidget::frameSwapped, [&frames] { ++frames; });
+        const int before_turn = view.pictures();
         QElapsedTimer time;
         time.start();
         const double before = process_time();
         for (int move = 0; time.elapsed() < 3000; ++move) {
             QTest::mouseMove(&view, middle + QPoint(move % 200, move % 120));
-            const int seen = frames;
-            until([&] { return frames > seen || time.elapsed() >= 3000; });
+            const int seen = view.pictures();
+            until([&] { return view.pictures() > seen || time.elapsed() >= 3000; });
         }
+        const int frames = view.pictures() - before_turn;
         std::printf("%-40s %8.1f /s    (goal 15; %.0f ms of processor each)\n", "  pictures while turning",
                     1000.0 * frames / static_cast<double>(time.elapsed()), 1000 * (process_time() - before) / frames);
-        QObject::disconnect(counting);
         QTest::mouseRelease(&view, Qt::LeftButton, Qt::NoModifier, middle);
         say("  longest gap of the loop", beat_.take(), "100");
         say("  whole picture after the turn", until([&] { return !fields.stands_in(0); }), "3200");
@@ -324,7 +319,7 @@ int run(int argc, char** argv) {
     ::mallopt(M_ARENA_MAX, 2);  // as underbody-studio
     ::mallopt(M_MMAP_THRESHOLD, 128 * 1024);
     const double display_took = age() - before_display;
-    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    ::setenv("QT_XCB_GL_INTEGRATION", "none", 1);
     QApplication application(argc, argv);
     std::setlocale(LC_NUMERIC, "C");
     QLocale::setDefault(QLocale::c());

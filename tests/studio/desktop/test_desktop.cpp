@@ -155,6 +155,28 @@ TEST(Desktop, StaysOpenOverTheComputedShippedStudy) {
     }
 }
 
+// VTK ended the program. The window says what it cannot show, pictures are drawn on a display of their own.
+TEST(Desktop, ADisplayWithoutOpenGLIsEnough) {
+    if (!has_xvfb()) {
+        GTEST_SKIP() << "skipped: Xvfb is not installed";
+    }
+    const core::TemporaryFolder folder;
+    test::make_few_gaps(folder.path() / "study");
+    const core::VirtualDisplay display(1440, 900, false);
+    const std::map<std::string, std::string> there = {
+        {"DISPLAY", display.name()}, {"WAYLAND_DISPLAY", ""}, {"HOME", folder.path().string()}};
+    const auto computed = test::run_underbody({"study", "run", (folder.path() / "study").string()}, {}, there);
+    EXPECT_EQ(computed.exit_code, 0) << computed.errors;
+    core::write_file(folder.path() / "views.log",
+                     "open " + (folder.path() / "study").string() + "\nselect case/ellipse-h5-p0\nworkspace compare\n");
+    const auto run = test::run_program(
+        (test::program_folder() / "underbody-studio").string(),
+        {"--screenshot", (folder.path() / "pictures").string(), "--replay", (folder.path() / "views.log").string()}, {},
+        there);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_TRUE(fs::exists(folder.path() / "pictures" / "compare.png"));
+}
+
 // J4: the second case less the first, in place of its field.
 TEST(Desktop, ComparesByDifferences) {
     if (!has_xvfb()) {

@@ -153,6 +153,22 @@ TEST_F(Window, EveryInputIsReachedByTab) {
 
 // What the mouse does on a plot, keys do too.
 // A plot gives its picture and its numbers, rows of a table go into a spreadsheet.
+// Of a list the mouse presses what is inside it, and the ring stayed.
+TEST_F(Window, TheRingGoesWhenTheMouseIsUsed) {
+    open(computed_study());
+    auto* tree = window_->findChild<StudyTree*>();
+    ASSERT_NE(tree, nullptr);
+    tree->setFocus(Qt::TabFocusReason);
+    QTest::keyClick(tree, Qt::Key_Tab);
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Backtab, Qt::ShiftModifier);
+    auto* area = qobject_cast<QAbstractScrollArea*>(QApplication::focusWidget());
+    ASSERT_NE(area, nullptr) << name_of(QApplication::focusWidget());
+    expect_seen(*window_, *area);
+    QTest::mouseClick(area->viewport(), Qt::LeftButton, Qt::NoModifier, area->viewport()->rect().center());
+    const auto* ring = area->findChild<QWidget*>("focus ring", Qt::FindDirectChildrenOnly);
+    EXPECT_TRUE(ring == nullptr || !ring->isVisible());
+}
+
 TEST_F(Window, EveryPlotAndTableIsCopied) {
     open(computed_study());
     act("workspace tables");

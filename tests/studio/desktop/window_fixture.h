@@ -20,7 +20,10 @@ namespace underbody::studio {
 namespace fs = std::filesystem;
 
 /// Called before the application is made; `offscreen` draws without a display, and without 3D.
-inline std::function<void()> choose_platform = [] { ::setenv("QT_QPA_PLATFORM", "offscreen", 1); };
+inline std::function<void()> choose_platform = [] {
+    ::setenv("QT_QPA_PLATFORM", "offscreen", 1);
+    ::unsetenv("DISPLAY");
+};
 
 /// One application for all tests: Qt allows no second one.
 inline Application& application() {

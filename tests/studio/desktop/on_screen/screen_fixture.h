@@ -1,12 +1,10 @@
 // The real window with its 3D views on an X server without a screen (Xvfb).
 #pragma once
 
-#include <QVTKOpenGLNativeWidget.h>
-
-#include <QSurfaceFormat>
 #include <QTest>
 
 #include "core/virtual_display.h"
+#include "studio/desktop/scene_widget.h"
 #include "tests/studio/desktop/heartbeat.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -19,7 +17,7 @@ inline void use_own_display() {
     ::setenv("DISPLAY", display.name().c_str(), 1);
     ::setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
     ::setenv("QT_QPA_PLATFORM", "xcb", 1);
-    QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
+    ::setenv("QT_XCB_GL_INTEGRATION", "none", 1);  // as underbody-studio
 }
 
 /// Before any window is made.
@@ -34,16 +32,16 @@ protected:
         settle(*window_);
     }
     /// The 3D view of a cell that is seen.
-    QVTKOpenGLNativeWidget* view(int cell = 0) {
-        QList<QVTKOpenGLNativeWidget*> seen;
-        for (auto* one : window_->findChildren<QVTKOpenGLNativeWidget*>()) {
+    SceneWidget* view(int cell = 0) {
+        QList<SceneWidget*> seen;
+        for (auto* one : window_->findChildren<SceneWidget*>()) {
             if (one->isVisible()) {
                 seen.append(one);
             }
         }
         return cell < seen.size() ? seen[cell] : nullptr;
     }
-    QImage picture(int cell = 0) { return view(cell)->grabFramebuffer().convertToFormat(QImage::Format_RGB32); }
+    QImage picture(int cell = 0) { return view(cell)->picture().convertToFormat(QImage::Format_RGB32); }
 };
 
 /// Share of the pixels that differ by more than `step` of 255 in a colour.

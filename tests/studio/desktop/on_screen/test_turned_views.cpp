@@ -4,6 +4,7 @@
 
 #include "core/figure.h"
 #include "studio/desktop/design_panel.h"
+#include "studio/desktop/scene.h"
 #include "tests/studio/desktop/on_screen/screen_fixture.h"
 
 namespace underbody::studio {
@@ -78,6 +79,36 @@ TEST_F(Turned, ASteppedWheelIsOneStepOfTheHistory) {
     EXPECT_GT(difference(before, seen()), 0.02);
     EXPECT_TRUE(window_->desk().state().fields.turned);
     EXPECT_EQ(window_->desk().history().position(), steps + 1);
+}
+
+// The press fell into the time in which a hand is waited for, and the turn before it was forgotten.
+TEST_F(Turned, AClickSoonAfterATurnLosesNothing) {
+    open(computed_study());
+    const QPoint middle = view()->rect().center();
+    QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
+    QTest::mouseMove(view(), middle + QPoint(50, 20));
+    QTest::qWait(30);
+    QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle + QPoint(50, 20));
+    QTest::qWait(20);
+    QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
+    QTest::qWait(250);
+    EXPECT_FALSE(window_->desk().state().design.turned) << "still in a hand";
+    QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle);
+    QTest::qWait(300);
+    EXPECT_TRUE(window_->desk().state().design.turned);
+}
+
+// A press alone counted as a turn, after which the body was no longer fitted to its place.
+TEST_F(Turned, AClickIsNoTurn) {
+    open(computed_study());
+    QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier, view()->rect().center());
+    QTest::qWait(300);
+    ASSERT_FALSE(window_->desk().state().design.turned);
+    window_->resize(window_->width() - 200, window_->height() - 100);
+    const QImage resized = seen();
+    act("turn design " + text_of(Scene::Pose{1, 1, 1, 0, 0, 0, 0, 0, 1, 0.1}));
+    act("turn design");
+    EXPECT_LT(difference(resized, seen(), 40), 0.01) << "fitted, as by the command";
 }
 
 TEST_F(Turned, DesignsViewIsKept) {
