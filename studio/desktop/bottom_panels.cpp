@@ -16,12 +16,18 @@
 
 namespace underbody::studio {
 
+namespace {
+
+constexpr int most_lines = 5000;
+
+}  // namespace
+
 CommandList::CommandList(Desk& desk, QWidget* parent) : QWidget(parent) {
     auto* row = new QHBoxLayout(this);
     row->setContentsMargins(4, 2, 4, 2);
     text_ = new QPlainTextEdit;
     text_->setReadOnly(true);
-    text_->setMaximumBlockCount(5000);
+    text_->setMaximumBlockCount(most_lines);
     text_->setLineWrapMode(QPlainTextEdit::NoWrap);
     text_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
     text_->setAccessibleName("Commands that were done");
@@ -37,13 +43,20 @@ CommandList::CommandList(Desk& desk, QWidget* parent) : QWidget(parent) {
     buttons->addStretch(1);
     row->addLayout(buttons);
     connect(&desk, &Desk::acted, this, [this](const QString& line, const QString& command) {
-        text_->appendPlainText(command.isEmpty() ? line : line + "\n    # " + command);
+        lines_.append(command.isEmpty() ? line : line + "\n    # " + command);
+        if (lines_.size() > most_lines) {
+            lines_.removeFirst();
+        }
+        constexpr int shown = 2000;  // thousands of chosen cases take a text 0.1 s to lay out
+        const QString rest =
+            line.size() > shown ? QString(" … (%1 more characters; Copy all has them)").arg(line.size() - shown) : "";
+        text_->appendPlainText(line.left(shown) + rest + (command.isEmpty() ? "" : "\n    # " + command.left(shown)));
         text_->moveCursor(QTextCursor::End);
         text_->moveCursor(QTextCursor::StartOfBlock);  // the beginning of a long line is what is seen
     });
 }
 
-QString CommandList::script() const { return text_->toPlainText() + "\n"; }
+QString CommandList::script() const { return lines_.join("\n") + "\n"; }
 
 struct JobList::Shown : public QWidget {
     Shown(Jobs& jobs, int number) : id(number) {

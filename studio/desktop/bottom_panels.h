@@ -21,6 +21,7 @@ public:
 
 private:
     QPlainTextEdit* text_ = nullptr;
+    QStringList lines_;
 };
 
 /// A row a job: what it does, how far it is, a button to cancel it.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
+#include <unordered_set>
 
 #include "cases/accept.h"
 #include "core/text.h"
@@ -132,9 +134,10 @@ State select(State state, const Words& words, const Session& session) {
     }
     state.selection.clear();
     std::map<std::string, std::vector<std::string>> kinds;
+    std::unordered_set<std::string_view> seen;  // thousands of cases are chosen at once
     for (const auto& id : words) {
         const auto at = id.find('/');
-        if (std::find(state.selection.begin(), state.selection.end(), id) == state.selection.end()) {
+        if (seen.insert(id).second) {
             state.selection.push_back(id);
             kinds[id.substr(0, at)].push_back(id.substr(at + 1));
         }

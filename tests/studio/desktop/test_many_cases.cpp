@@ -1,12 +1,14 @@
 // A study of very many cases in the window, and the first page of an empty one.
 #include <QLineEdit>
 #include <QMouseEvent>
+#include <QPlainTextEdit>
 #include <QTest>
 #include <QToolButton>
 #include <cmath>
 #include <fstream>
 
 #include "core/text.h"
+#include "studio/desktop/bottom_panels.h"
 #include "studio/desktop/first_page.h"
 #include "studio/desktop/parallel_view.h"
 #include "tests/studio/desktop/heartbeat.h"
@@ -95,6 +97,12 @@ TEST_F(Window, AllOfTenThousandCasesAreChosenAtOnce) {
         EXPECT_LT(took, 0.3) << "1.6 s in Compare, 0.6 s elsewhere before";
         settle(*window_);
     }
+    // The list of commands shows the beginning of such a line and keeps the whole.
+    const auto* commands = window_->findChild<CommandList*>();
+    const auto* shown = commands->findChild<QPlainTextEdit*>();
+    EXPECT_GT(commands->script().size(), 100000);
+    EXPECT_LT(shown->toPlainText().size(), 20000);
+    EXPECT_TRUE(shown->toPlainText().contains("more characters"));
 }
 
 // The limits of a shape's numbers are asked for beside the window, however many cases stand around it.
