@@ -275,7 +275,8 @@ private:
             header.emplace_back("exists with probability");
             for (std::size_t i = 0; i < rows.size(); ++i) {
                 const EquilibriumResult& point = table.equilibria[i];
-                rows[i].push_back(point.doubtful() ? core::format_number(point.probability, 2) : "> 0.995");
+                rows[i].push_back(point.doubtful() ? core::format_number(point.probability, 2)
+                                                   : "> " + core::format_number(tables::sure_enough));
             }
         }
         if (rows.empty()) {

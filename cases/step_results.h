@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/table.h"
+#include "surrogates/tables/analysis/equilibria.h"
 
 namespace underbody::cases {
 
@@ -23,7 +24,7 @@ struct EquilibriumResult {
     double kick_velocity = std::numeric_limits<double>::quiet_NaN();    ///< m/s
     double probability = std::numeric_limits<double>::quiet_NaN();      ///< that there is one; NaN: not known
     /// Not so sure that it could pass in silence.
-    [[nodiscard]] bool doubtful() const { return probability < 0.995; }
+    [[nodiscard]] bool doubtful() const { return probability < tables::sure_enough; }
 };
 
 /// A [[table]].

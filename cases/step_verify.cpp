@@ -107,13 +107,10 @@ private:
 
 /// Size of the force that a row of a table states, as far as it states its parts.
 double resultant(const core::Table& table, std::size_t row) {
-    double squares = 0;
-    for (const char* name : {"lift_force", "drag_force", "side_force"}) {
-        if (const auto* column = table.find(name); column != nullptr && std::isfinite(column->numbers[row])) {
-            squares += column->numbers[row] * column->numbers[row];
-        }
-    }
-    return std::sqrt(squares);
+    return postproc::resultant([&](const char* name) {
+        const auto* column = table.find(name);
+        return column != nullptr ? column->numbers[row] : std::nan("");
+    });
 }
 
 /// The values of a verification, one by one, and what they come to.

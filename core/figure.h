@@ -12,6 +12,7 @@ struct Colour {
     unsigned char green = 0;
     unsigned char blue = 0;
     unsigned char alpha = 255;
+    friend bool operator==(const Colour&, const Colour&) = default;
 };
 
 /// Colours told apart by people with any colour vision (Okabe and Ito 2008), by index, repeating.
@@ -23,6 +24,7 @@ struct FigureAxis {
     double lower = 0;   ///< lower == upper: fit to the data
     double upper = 0;
     bool logarithmic = false;
+    friend bool operator==(const FigureAxis&, const FigureAxis&) = default;
 };
 
 struct FigureCurve {
@@ -33,6 +35,7 @@ struct FigureCurve {
     double width = 2;
     bool dashed = false;
     bool steps = false;
+    friend bool operator==(const FigureCurve&, const FigureCurve&) = default;
 };
 
 struct FigureBand {
@@ -41,6 +44,7 @@ struct FigureBand {
     std::vector<double> lower;
     std::vector<double> upper;
     Colour colour{0, 114, 178, 50};
+    friend bool operator==(const FigureBand&, const FigureBand&) = default;
 };
 
 struct FigurePoints {
@@ -52,6 +56,7 @@ struct FigurePoints {
     Colour colour;
     Shape shape = Shape::disc;
     double size = 7;
+    friend bool operator==(const FigurePoints&, const FigurePoints&) = default;
 };
 
 /// A straight line across the whole plot.
@@ -61,12 +66,14 @@ struct FigureLine {
     std::string label;
     Colour colour{120, 120, 120, 255};
     bool dashed = true;
+    friend bool operator==(const FigureLine&, const FigureLine&) = default;
 };
 
 struct FigureNote {
     double x = 0;
     double y = 0;
     std::string text;
+    friend bool operator==(const FigureNote&, const FigureNote&) = default;
 };
 
 /// A grid of classes over the axes' box (a stability map). `index[j * columns + i]`: i along x, j along y,
@@ -78,6 +85,7 @@ struct FigureClasses {
     std::vector<int> index;
     std::vector<std::string> names;
     std::vector<Colour> colours;
+    friend bool operator==(const FigureClasses&, const FigureClasses&) = default;
 };
 
 /// A grid of values, drawn with a colour scale; NaN is left blank.
@@ -92,12 +100,14 @@ struct FigureMap {
     double lower = 0, upper = 0;  ///< colour range; equal: from the data
     bool x_by_ratio = false;      ///< cells along x are of equal ratio, not of equal width; x_lower > 0
     bool y_by_ratio = false;
+    friend bool operator==(const FigureMap&, const FigureMap&) = default;
 };
 
 /// Arrows of a flow (dx/dt, dy/dt): drawn with one length, direction in axis coordinates.
 struct FigureArrows {
     std::vector<double> x, y, dx, dy;
     Colour colour{90, 90, 90, 160};
+    friend bool operator==(const FigureArrows&, const FigureArrows&) = default;
 };
 
 struct FigureBars {
@@ -106,8 +116,10 @@ struct FigureBars {
     std::vector<double> values;
     std::vector<double> errors;
     Colour colour{0, 114, 178, 255};
+    friend bool operator==(const FigureBars&, const FigureBars&) = default;
 };
 
+/// Equal in every number and word; one that holds a NaN is equal to none.
 struct Figure {
     std::string title;
     std::string caption;  ///< printed under it in a report: what it shows and from what it was made
@@ -124,6 +136,7 @@ struct Figure {
     std::vector<FigureNote> notes;
     bool equal_scales = false;
     bool legend = true;
+    friend bool operator==(const Figure&, const Figure&) = default;
 };
 
 }  // namespace underbody::core

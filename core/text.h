@@ -1,6 +1,7 @@
 // Numbers and words out of text and back, independent of the locale.
 #pragma once
 
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ std::string_view trimmed(std::string_view text);
 
 /// The parts between the separators; empty parts are kept.
 std::vector<std::string_view> split(std::string_view text, char separator);
+/// The parts would outlive a text that nobody holds.
+template <std::same_as<std::string> Text>
+std::vector<std::string_view> split(Text&& text, char separator) = delete;
 
 std::string lower_case(std::string_view text);
 

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/angle.h"
 #include "core/error.h"
 
 namespace underbody::geometry {
 
 namespace {
 
+using core::degree;
 using std::numbers::pi;
-constexpr double degree = pi / 180;
 
 double square(double v) { return v * v; }
 

@@ -37,13 +37,15 @@ std::shared_ptr<const Names> listing(const fs::path& folder) {
     return known;
 }
 
-constexpr std::string_view cfd_endings[] = {".csv",  ".cas", ".dat", ".msh", ".h5",  ".case", ".encas",
-                                            ".cgns", ".pvd", ".vtp", ".vtu", ".vtm", ".foam"};
+/// Of the files that the importers read (postproc/importers/registry.cpp).
+constexpr std::string_view cfd_endings[] = {".csv", ".cas", ".dat", ".msh", ".h5",  ".case", ".encas", ".cgns",
+                                            ".pvd", ".vtp", ".vtu", ".vtm", ".vtk", ".plt",  ".foam"};
+constexpr std::string_view packed = ".gz";
 
 bool is_cfd_name(const std::string& name) {
     std::string plain = name;
-    if (plain.ends_with(".gz")) {
-        plain.resize(plain.size() - 3);
+    if (plain.ends_with(packed)) {
+        plain.resize(plain.size() - packed.size());
     }
     return std::any_of(std::begin(cfd_endings), std::end(cfd_endings),
                        [&](std::string_view ending) { return plain.ends_with(ending); });
@@ -104,13 +106,14 @@ std::string case_stem(const fs::path& file) {
     std::string stem = (file.has_filename() ? file : file.parent_path()).filename().string();
     for (bool cut = true; cut;) {
         cut = false;
-        for (const std::string_view ending : {".gz", ".csv", ".cas", ".dat", ".msh", ".h5", ".case", ".encas", ".cgns",
-                                              ".pvd", ".vtp", ".vtu", ".vtm", ".foam"}) {
+        const auto without = [&](std::string_view ending) {
             if (stem.size() > ending.size() && stem.ends_with(ending)) {
                 stem.resize(stem.size() - ending.size());
                 cut = true;
             }
-        }
+        };
+        without(packed);
+        std::for_each(std::begin(cfd_endings), std::end(cfd_endings), without);
     }
     return stem;
 }

@@ -157,8 +157,7 @@ std::optional<Problem> reference_fault(const Field& field, const LoadsResult& lo
 }
 
 std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base) {
-    constexpr double closed = 0.01;
-    if (!loads.coefficients || loads.closure > closed) {
+    if (!loads.coefficients || loads.closure > nearly_closed_within) {
         return {};
     }
     const double density = loads.coefficients->density, speed = loads.coefficients->speed;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "postproc/field/rim_edges.h"
+#include "postproc/loads/loads_result.h"
 
 namespace underbody::postproc {
 
@@ -88,7 +89,6 @@ private:
         if (free.size() > 12) {
             return false;
         }
-        constexpr double closed = 0.01;
         double best = std::numeric_limits<double>::infinity();
         double second = best;
         std::vector<double> best_signs = facing_.signs;
@@ -106,7 +106,7 @@ private:
                 second = std::min(second, open);
             }
         }
-        if (best > closed || second < 4 * best + 1e-9) {
+        if (best > nearly_closed_within || second < 4 * best + 1e-9) {
             return false;
         }
         const std::vector<double> along = volumes(best_signs);

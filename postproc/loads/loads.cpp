@@ -140,8 +140,7 @@ private:
             }
             others += (others.empty() ? "zone '" : "; zone '") + zone.name + "': " + zone.why;
         }
-        constexpr double closed = 1e-3;
-        if (result_.closure > closed) {
+        if (result_.closure > closed_within) {
             const std::string half = cut_across();
             throw InputError("zone",
                              "which walls are the body? " + others + ". The others (" + quoted(body) +

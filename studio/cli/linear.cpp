@@ -24,6 +24,7 @@
 #include "surrogates/dynamics/simulate/feedback.h"
 #include "surrogates/dynamics/simulate/heave_pitch.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
+#include "surrogates/tables/analysis/equilibria.h"
 
 namespace underbody::studio {
 
@@ -122,7 +123,7 @@ std::string modes_text(const std::vector<dynamics::Mode>& modes, const dynamics:
     for (std::size_t i = 0; i < modes.size(); ++i) {
         text += mode_text(modes[i], i < error.modes.size() ? error.modes[i] : dynamics::ModeError{});
     }
-    if (error.stated && error.stable > 0.005 && error.stable < 0.995) {
+    if (error.stated && error.stable > 1 - tables::sure_enough && error.stable < tables::sure_enough) {
         text +=
             "  stable in " + core::format_number(100 * error.stable, 3) + " % of the draws from the stated errors\n";
     }

@@ -229,7 +229,7 @@ std::string described(const ForceTable& table, const tables::Equilibria& found, 
         text += ", barrier " + core::format_number(e.barrier, 4) + " J";
         text += e.limited_by_range ? " (to the end of the table)" : "";
     }
-    if (e.probability && *e.probability < 0.995) {
+    if (e.doubtful()) {
         text += ", exists with probability " + core::format_number(*e.probability, 2);
     }
     return text;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "cases/case_loads.h"
+#include "cases/moved.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "postproc/loads/named_loads.h"
@@ -172,12 +173,18 @@ void CompareNumbers::fill_forces() {
             };
             const double number = value(cases_[i], quantity.name);
             const double difference = number - value(cases_.front(), quantity.name);
-            const double joint = std::hypot(error_of(cases_[i]), error_of(cases_.front()));
+            cases::Moved moved{quantity.name,
+                               quantity.unit,
+                               value(cases_.front(), quantity.name),
+                               number,
+                               error_of(cases_.front()),
+                               error_of(cases_[i])};
+            cases::judge(moved);
             const int row = static_cast<int>(i);
             put(*forces_, row, column++, shown(number));
             put(*forces_, row, column++, shown(error_of(cases_[i]), 2));
             put(*forces_, row, column++, i > 0 ? shown(difference, 3) : QString("–"),
-                i > 0 && std::abs(difference) > 2 * joint);
+                i > 0 && moved.shift == cases::Shift::beyond);
         }
         if (!cases_[i].why.empty()) {
             forces_->verticalHeaderItem(static_cast<int>(i))->setToolTip(qt(cases_[i].why));
@@ -384,8 +391,6 @@ void CompareNumbers::ask_tables() {
             };
         });
 }
-
-QString CompareNumbers::said_of_tables() const { return tables_said_->text(); }
 
 std::vector<QStringList> CompareNumbers::rows() const {
     std::vector<QStringList> all(1);

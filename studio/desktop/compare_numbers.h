@@ -47,8 +47,6 @@ public:
     [[nodiscard]] QTableWidget* forces() const { return forces_; }
     [[nodiscard]] QTableWidget* zones() const { return zones_; }
     [[nodiscard]] PlotView* along() const { return along_; }
-    /// Where the overlaid tables differ, one sentence a pair; empty while they are fitted.
-    [[nodiscard]] QString said_of_tables() const;
 
 Q_SIGNALS:
     void remark(const QString& text);
@@ -62,8 +60,6 @@ private:
     void fill_zones();
     void draw_along();
     void ask_tables();
-    /// A sentence a pair of tables; where they differ is marked in the figure.
-    static QString say_differences(Compared& result);
     [[nodiscard]] std::vector<const cases::TableSpec*> tables_of_cases() const;
     [[nodiscard]] double value(const ComparedCase& one, const std::string& quantity) const;
 

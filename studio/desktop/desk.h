@@ -21,7 +21,6 @@ public:
     ~Desk() override;
 
     [[nodiscard]] const State& state() const { return *history_.state(); }
-    [[nodiscard]] const StatePointer& state_pointer() const { return history_.state(); }
     [[nodiscard]] const Session& session() const { return *session_; }
     [[nodiscard]] const SessionPointer& session_pointer() const { return session_; }
     [[nodiscard]] const History& history() const { return history_; }

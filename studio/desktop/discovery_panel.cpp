@@ -95,10 +95,7 @@ QString scaled(const json& object, const char* key, double factor, int digits) {
 
 QString probability(const json& effect) {
     const double chance = effect.value("probability", std::nan(""));
-    return std::isnan(chance) ? QString()
-           : chance < 0.001   ? QString("&lt; 0.001")
-           : chance > 0.999   ? QString("&gt; 0.999")
-                              : html(core::format_number(chance, 3));
+    return std::isnan(chance) ? QString() : html(discovery::probability_text(chance));
 }
 
 QString parameters(const json& effect) {

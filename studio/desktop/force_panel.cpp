@@ -364,7 +364,7 @@ namespace {
 /// What takes from its number.
 QString doubts_of(const tables::Equilibrium& one) {
     const QString range = one.limited_by_range ? "limited by the range of the table" : "";
-    return one.probability && *one.probability < 0.995
+    return one.doubtful()
                ? "exists with probability " + number(*one.probability, 2) + (range.isEmpty() ? "" : "; " + range)
                : range;
 }

@@ -69,8 +69,6 @@ public:
     void share_camera(Scene& other);
     /// Light text on dark ground or the other way round.
     void set_ground(bool dark);
-    /// What is seen of the body of a shape or file: the surfaces have no arrays.
-    [[nodiscard]] bool has_arrays() const { return !choices().empty(); }
     /// "bottom", "top", "side", "front", "iso" in the frame of the file.
     void look_from(const std::string& view, const std::string& forward, const std::string& up,
                    const std::optional<std::array<double, 6>>& box = {});

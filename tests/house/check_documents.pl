@@ -81,7 +81,7 @@ for my $file (@files) {
         next if $name =~ /^(PROVENANCE|mocap_data_description)\.md$/;  # beside the measurements of others, not in this tree
         complain("$file names $name, which does not exist") unless grep { m{(^|/)\Q$name\E$} } @pages;
     }
-    complain("$file speaks of notes that are not in the repository: '$1'") if $text =~ /((?:physics|design) notes)/;
+    complain("$file speaks of notes that are not in the repository: '$1'") if $text =~ /((?:physics|design) notes)/i;
 }
 
 # The routes of CONTRIBUTING.md: `path/of/file`: `symbol`, ...

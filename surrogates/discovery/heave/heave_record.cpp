@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/model/force_sources.h"
 #include "surrogates/dynamics/model/repeated_runs.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
@@ -392,10 +393,7 @@ std::vector<double> lift_over_steps(const dynamics::Model& model, const dynamics
             if (source.quantity != "lift_force" || (!axis && own == source.scales.end())) {
                 continue;
             }
-            const auto strength = [&](double x) {
-                return std::pow(std::max(0.0, std::abs(x) - own->dead_band) / (own->reference - own->dead_band),
-                                own->exponent);
-            };
+            const auto strength = [&](double x) { return dynamics::scale_factor(*own, x); };
             if (axis || sources != 1 || !(strength(middle) > 0)) {
                 held_at_mean = column.name;
                 continue;

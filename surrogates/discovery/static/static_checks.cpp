@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/angle.h"
 #include "core/counted.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -60,7 +61,7 @@ Outside outside_of(const StaticExperiment& experiment) {
                 continue;
             }
             outside.ranges += (outside.ranges.empty() ? "" : "; ") + text;
-            for (const double factor : {1000.0, 0.001, 57.29578, 0.01745329}) {
+            for (const double factor : {1000.0, 0.001, 1 / core::degree, core::degree}) {
                 if (low > axis.upper && low * 0.999 / factor >= axis.lower && high / factor <= 1.001 * axis.upper) {
                     outside.slip = "The " + axis.name + " looks " + core::format_number(factor, 4) +
                                    " times too large: is its unit right?";

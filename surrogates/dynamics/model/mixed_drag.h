@@ -4,7 +4,7 @@
 namespace underbody::dynamics {
 
 /// The mixed law: linear below Reynolds number 1, quadratic above 1000, a quintic between that is C2 at both ends.
-/// F = c0 + c1 s + ... + c5 s^5 with s = (|w| - w1)/(w2 - w1), odd extension. (Design notes 6.2.)
+/// F = c0 + c1 s + ... + c5 s^5 with s = (|w| - w1)/(w2 - w1), odd extension. (docs/physics.md, section 6.2.)
 struct MixedDrag {
     double w1 = 0, w2 = 0;  ///< m/s
     double c[6] = {};

@@ -134,12 +134,6 @@ Model Model::with_effect(EffectUse use) const {
     return result;
 }
 
-Model Model::without_effects() const {
-    Model result = *this;
-    result.effects.clear();
-    return result;
-}
-
 Model Model::resolved() const {
     Model result = *this;
     std::vector<EffectUse> kept;

@@ -167,7 +167,6 @@ struct Model {
     [[nodiscard]] double parameter(const std::string& dotted_name) const;
     [[nodiscard]] Model with_parameter(const std::string& dotted_name, double value) const;
     [[nodiscard]] Model with_effect(EffectUse use) const;
-    [[nodiscard]] Model without_effects() const;
     /// declared_parameter effects carried out (and removed from the list).
     [[nodiscard]] Model resolved() const;
     /// Virtual mass in heave far from the ground.

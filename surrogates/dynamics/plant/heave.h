@@ -85,10 +85,9 @@ public:
     [[nodiscard]] double damping(double h) const;
     /// What is said where numbers rest on small motions; empty without Coulomb friction.
     [[nodiscard]] core::Problems left_out_of_small_motions() const;
-    /// Its parts: the water's drag law at a velocity through the water, and what follows the velocity in the guide or
-    /// the film (friction, squeeze film, corrections over the velocity).
+    /// The part of the water's drag law, at a velocity through the water; the rest is of the guide and the film
+    /// (friction, squeeze film, corrections over the velocity).
     [[nodiscard]] double water_drag(double relative) const;
-    [[nodiscard]] double guided_resistance(double h, double w) const;
     /// Everything up but lift, the water's drag and waves, N: weight, input, guide, film, springs, corrections, memory.
     [[nodiscard]] double other_force(double h, double w, const Moment& moment, const double* memory = nullptr) const;
     [[nodiscard]] double timed_force(double t) const;

@@ -243,12 +243,6 @@ double HeavePlant::water_drag(double relative) const {
     return -load.force;
 }
 
-double HeavePlant::guided_resistance(double h, double w) const {
-    HeaveLoad load;
-    add_guided_resistance<false>(terms, h, w, 0, load);
-    return -load.force;
-}
-
 double HeavePlant::resistance(double h, double w) const {
     HeaveLoad load;
     add_water_drag<false>(terms, w, load);

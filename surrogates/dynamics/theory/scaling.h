@@ -1,5 +1,5 @@
 // How forces, frequencies and gaps scale with size and speed; coefficients; the linear-spring estimate of a survivable
-// kick. Design notes 4.4 and 4.5 (thesis 4.5 to 4.15, corrected).
+// kick. docs/physics.md, sections 4.4 and 4.5 (thesis 4.5 to 4.15, corrected).
 #pragma once
 
 namespace underbody::dynamics {

@@ -32,6 +32,9 @@ struct EquilibriumOptions {
 enum class Stability { stable, unstable, marginal };
 std::string to_string(Stability stability);
 
+/// A probability above which nothing is said of it.
+constexpr double sure_enough = 0.995;
+
 struct Equilibrium {
     double gap = 0;  ///< value along the axis, SI
     Stability stability = Stability::stable;
@@ -62,6 +65,8 @@ struct Equilibrium {
     double contact_velocity = 0;    ///< m/s, downward kick that just reaches the lower end of the table
     double extent = 0;              ///< m, > 0: a stretch of balance of that width around `gap`
     std::optional<double> probability;  ///< share of the drawn tables that have one like it within 4 sigma
+    /// Not so sure that it could pass in silence.
+    [[nodiscard]] bool doubtful() const { return probability && *probability < sure_enough; }
 };
 
 struct Equilibria {

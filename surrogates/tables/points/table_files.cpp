@@ -1,7 +1,7 @@
 #include "surrogates/tables/points/table_files.h"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 namespace underbody::tables {
 
@@ -16,7 +16,9 @@ const std::vector<TableFile>& table_files() {
 const std::string& table_ending(const std::string& format) {
     const auto at = std::find_if(table_files().begin(), table_files().end(),
                                  [&](const TableFile& file) { return file.format == format; });
-    assert(at != table_files().end());
+    if (at == table_files().end()) {
+        throw std::logic_error("no ending is known of tables as " + format);
+    }
     return at->ending;
 }
 
