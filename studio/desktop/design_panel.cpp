@@ -332,7 +332,6 @@ void DesignPanel::show_body(const std::shared_ptr<const LiveBody>& body) {
     }
     if (scene_) {
         scene_->set_ground(palette().base().color().lightness() < 128);
-        scene_->set_moving(!body->certificate);
         scene_->show(body->drawn, first);
         scene_->colour_by({}, {0, 1});
         if (!fitted_view_ &&

@@ -53,7 +53,6 @@ void draw_in(vtkRenderWindow& holder, vtkGenericOpenGLRenderWindow& window) {
 void draw_something(vtkRenderWindow& holder) {
     vtkNew<vtkGenericOpenGLRenderWindow> window;
     draw_in(holder, *window);
-    window->SetMultiSamples(4);
     window->SetSize(64, 64);
     vtkNew<vtkSphereSource> ball;
     vtkNew<vtkElevationFilter> colours;
@@ -80,7 +79,10 @@ void draw_something(vtkRenderWindow& holder) {
     renderer->AddActor(axes);
     renderer->AddActor2D(flat);
     window->AddRenderer(renderer);
-    window->Render();
+    for (const int samples : {0, 4}) {
+        window->SetMultiSamples(samples);
+        window->Render();
+    }
     window->Finalize();
 }
 

@@ -28,7 +28,7 @@ public:
     void wait();
     enum class State { not_begun, coming, ready, impossible };
     [[nodiscard]] State state() const { return state_; }
-    /// True where the processor draws, which takes four times as long for four samples a pixel.
+    /// True where the processor draws, which takes three times as long for four samples a pixel.
     [[nodiscard]] bool by_software() const { return made_.by_software; }
     /// Called once the state is `ready` or `impossible`: at once where it is, else unless `receiver` is gone by then.
     void when_known(QObject* receiver, const std::function<void()>& told);

@@ -29,7 +29,6 @@ Scene::Scene(QWidget* parent) : parts_(std::make_unique<Parts>()) {
     Parts& p = *parts_;
     p.widget = new SceneWidget(p.window, parent);
     p.window->AddRenderer(p.renderer);
-    p.window->SetMultiSamples(samples_at_rest);
     p.renderer->SetBackground(1, 1, 1);
     p.renderer->SetBackground2(0.88, 0.91, 0.94);
     p.renderer->GradientBackgroundOn();

@@ -75,8 +75,6 @@ public:
     [[nodiscard]] Pose pose() const;
     /// In the projection of the last `look_from`.
     void set_pose(const Pose& pose);
-    /// What is shown follows a hand: a software renderer then takes less care of edges.
-    void set_moving(bool moving);
     /// Another body as a line around it, in front of everything; nullptr: none. Only drawn, never picked or fitted to.
     /// True where it was another one before.
     bool outline(const std::shared_ptr<const Prepared>& other);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "studio/desktop/drawing_context.h"
 #include "studio/desktop/scene_parts.h"
 
 namespace underbody::studio {
@@ -134,10 +133,6 @@ void Scene::set_pose(const Pose& pose) {
 
 bool Scene::in_hand() const { return parts_->holding || parts_->turned.isActive(); }
 
-void Scene::set_moving(bool moving) {
-    parts_->window->SetMultiSamples(moving && DrawingContext::instance().by_software() ? 0 : samples_at_rest);
-}
-
 /// Who follows while the view is turned is told of each step; who keeps it, when the hand rests: a wheel turns it step
 /// by step.
 void Scene::Parts::follow_hand() {
@@ -154,12 +149,10 @@ void Scene::Parts::follow_hand() {
             turned();
         }
     });
-    // A software renderer draws four samples a pixel in four times the time: while the view is turned one is enough.
     on_hold->SetClientData(this);
     on_hold->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
         auto& parts = *static_cast<Parts*>(data);
         parts.holding = event == vtkCommand::StartInteractionEvent;
-        parts.scene->set_moving(parts.holding);
         if (!parts.holding && parts.scene->pose() != parts.held) {  // not of a click
             parts.turned.start();
         } else if (parts.holding && !parts.turned.isActive()) {  // else of a turn that nobody was told of yet

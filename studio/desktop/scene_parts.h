@@ -31,8 +31,6 @@
 
 namespace underbody::studio {
 
-constexpr int samples_at_rest = 4;  ///< a pixel
-
 struct Scene::Prepared {
     std::shared_ptr<const postproc::Field> field;
     postproc::MirrorPlane mirror;

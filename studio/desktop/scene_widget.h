@@ -6,6 +6,7 @@
 #include <vtkNew.h>
 
 #include <QImage>
+#include <QTimer>
 #include <QWidget>
 
 namespace underbody::studio {
@@ -33,10 +34,13 @@ protected:
 
 private:
     void fit();
-    void draw_now();
+    void draw_first();
+    void draw_smoothly();
+    void draw_now(int samples_a_pixel);
     void read();
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
     QVTKInteractorAdapter adapter_;
+    QTimer smooth_;
     QImage image_;
     bool stale_ = true;  ///< something else is to be drawn
     bool served_ = false;
