@@ -107,7 +107,9 @@ void add_plan(const Sources& from) {
         for (std::size_t v = 0; v < spec.variables.size(); ++v) {
             row.push_back(with_unit(d.at[v], spec.variables[v].unit));
         }
-        row.insert(row.end(), {d.fidelity, d.why, d.state});
+        const auto of_it = [&](const DesignRun& run) { return run.design == d.name && run.other.empty(); };
+        const bool begun = std::any_of(design.runs().begin(), design.runs().end(), of_it);
+        row.insert(row.end(), {d.fidelity, d.why, begun && d.state == "planned" ? "computed" : d.state});
         rows.push_back(row);
     }
     std::vector<std::string> header = {"design"};

@@ -540,9 +540,10 @@ private:
     void provenance() {
         page_.section("How this was made");
         page_.paragraph(
-            "Any number of this page: underbody study why STUDY \"3.5 mm\" (as it is printed), \"lift_force of CASE\", "
-            "\"table/NAME\", exports/FILE: back to loads, faces, files with their hashes, mesh, settings of the solver "
-            "and code.");
+            "Loads, equilibria, points of tables and shares of maps, as this page prints them (\"2.83 mm\") or by name "
+            "(\"lift_force of CASE\", \"table/NAME\", exports/FILE): underbody study why STUDY WHAT goes back to "
+            "faces, files "
+            "with their hashes, mesh, settings of the solver and code.");
         std::vector<std::vector<std::string>> rows;
         for (const auto& [room, version] : code_versions()) {
             rows.push_back({room, version.substr(0, 12)});

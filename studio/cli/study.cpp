@@ -270,7 +270,7 @@ void add_study_command(CLI::App& app, Shell& shell) {
         "beyond)\n"
         "  underbody study why cases/evie region/glide          from a number back to the files, settings and code "
         "that made it\n"
-        "  underbody study why cases/evie \"3.5 mm\"             the same of a number as the report prints it\n"
+        "  underbody study why cases/evie \"2.83 mm\"            the same of a number as the report prints it\n"
         "  underbody study compare cases/evie                   the study's own [[compare]]\n"
         "  underbody study compare before after                 two campaigns: what moved beyond its error\n"
         "  underbody study compare cases/evie --where-a mesh=coarse --where-b mesh=fine\n"

@@ -48,8 +48,16 @@ cases::NewCases new_cases(const StudyArguments& arguments) {
     cases.symmetry = arguments.symmetry;
     cases.length_unit = arguments.length_unit;
     cases.design_points = arguments.design_points;
-    for (const auto& condition : arguments.conditions) {
-        cases.conditions.push_back(in_two(condition, "name=value", "--condition speed=0.5m/s"));
+    for (const auto& conditions : arguments.conditions) {
+        std::string one;  // commas part conditions as in --where: what has no '=' goes on with the value before
+        for (const auto part : core::split(conditions, ',')) {
+            if (part.find('=') != std::string_view::npos && !one.empty()) {
+                cases.conditions.push_back(in_two(one, "name=value", "--condition speed=0.5m/s"));
+                one.clear();
+            }
+            one += (one.empty() ? "" : ",") + std::string(part);
+        }
+        cases.conditions.push_back(in_two(one, "name=value", "--condition speed=0.5m/s"));
     }
     for (const auto& unit : arguments.units) {
         cases.units.push_back(in_two(unit, "NAME=UNIT", "--unit Pressure=Pa"));
@@ -167,7 +175,8 @@ void add_study_add(CLI::App* study, std::shared_ptr<StudyArguments> arguments, S
                         "of --data: where a quantity stands: gap=rng_cm:cm, of a log gap=RFND/Dist (repeatable)");
     command->add_option("--clock", arguments->clock,
                         "of --data: field that says when, with its unit: t_us:us (default: the log's own time)");
-    command->add_option("--condition", arguments->conditions, "name=value held for all of them (repeatable)");
+    command->add_option("--condition", arguments->conditions,
+                        "name=value,name=value held for all of them (repeatable)");
     command->add_option("--symmetry", arguments->symmetry,
                         "half models: normal axis of their plane (y), written to [frame]");
     command

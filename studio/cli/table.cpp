@@ -123,7 +123,7 @@ nlohmann::json value_at(Shell& shell, const ForceTable& table, const tables::Hel
     } else if (e.no_data) {
         line += "   no points around";
     }
-    if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0) {
+    if (const double beyond = tables::beyond_points(table, point.data()); beyond > 0 && e.no_data) {
         shell.show(
             {{core::Problem::Severity::warning,
               "no points of " + table.quantity() + " lie around this place (" + core::format_number(100 * beyond, 2) +

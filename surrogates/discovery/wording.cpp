@@ -247,6 +247,18 @@ std::string worse_elsewhere(const Discovery& discovery) {
 
 bool is_fitted(const std::string& held_out) { return held_out == fitted_runs || held_out == fitted_readings; }
 
+/// What the data cannot tell from the verdict.
+std::string rivals_of(const Discovery& discovery) {
+    std::string text;
+    for (const FoundEffect& rival : discovery.alternatives) {
+        if (is_tied(discovery, rival)) {
+            text += " These data cannot well tell it from " + rival.name + " (" +
+                    core::format_number(rival.probability, 2) + ").";
+        }
+    }
+    return text;
+}
+
 std::string unknown_sentence(const Discovery& discovery, const std::string& error) {
     if (discovery.by_run) {
         return "Something real is missing that is not the same in all runs: " + by_run_text(*discovery.by_run) +
@@ -255,8 +267,12 @@ std::string unknown_sentence(const Discovery& discovery, const std::string& erro
     const bool corrected = std::any_of(discovery.effects.begin(), discovery.effects.end(),
                                        [](const FoundEffect& effect) { return !effect.uses.empty(); });
     const bool over_time = discovery.depends_on == std::vector<std::string>{"time"};
+    constexpr double sure = 0.9;  // a sentence without a number says no less
+    const double chance = discovery.effects.empty() ? 1 : discovery.effects.front().probability;
     return "Something real is missing that no effect of the catalogue explains; it depends on " +
-           list_of(discovery.depends_on) + "." +
+           list_of(discovery.depends_on) +
+           (chance < sure ? " (probability " + probability_text(chance) + ")." : std::string(".")) +
+           rivals_of(discovery) +
            (corrected   ? " A smooth correction was put into the model." + error
             : over_time ? " The model is as declared: what one record did over time says nothing of the next."
                         : " The model is as declared: no correction lowers the error" + error_is_on(discovery) +
@@ -335,13 +351,7 @@ std::string verdict_sentence(const Discovery& discovery) {
         text += (i == 0 ? "" : " and ") + named(discovery.effects[i]);
     }
     text += ", probability " + probability_text(discovery.effects.front().probability) + ".";
-    for (const FoundEffect& rival : discovery.alternatives) {
-        if (is_tied(discovery, rival)) {
-            text += " These data cannot well tell it from " + rival.name + " (" +
-                    core::format_number(rival.probability, 2) + ").";
-        }
-    }
-    return text + error + rest_sentence(discovery);
+    return text + rivals_of(discovery) + error + rest_sentence(discovery);
 }
 
 }  // namespace underbody::discovery

@@ -137,12 +137,26 @@ NeededColumns needed_columns(const std::string& motion) {
             "kind = \"static\" is for set points without motion, motion = \"surface\" for runs on the ground"};
 }
 
+/// "is 'gapp' meant? ": the column of the table that was probably meant for a needed one; empty without.
+std::string meant_for(const std::string& needed, const core::Table& table) {
+    for (const core::Column& column : table.columns) {
+        const std::string plain = core::plain_name(column.name);
+        if (core::meant_name(column, core::Likeness::possible) == needed || core::mistyped_quantity(plain) == needed ||
+            plain == needed) {
+            return "is its column " + column.name + " the " + needed + "? Then call it " + needed +
+                   " or say so with a [log.channel]; else ";
+        }
+    }
+    return {};
+}
+
 void check_time_series(const MeasuredRun& run, const std::string& motion) {
     const core::Place whole{run.table.source, {}, {}, {}};
     const NeededColumns needed = needed_columns(motion);
     for (const std::string& column : needed.columns) {
         if (run.table.find(column) == nullptr) {
-            throw core::InputError("missing", needed.run + " needs the column " + column, whole, needed.hint);
+            throw core::InputError("missing", needed.run + " needs the column " + column, whole,
+                                   meant_for(column, run.table) + needed.hint);
         }
     }
     const std::vector<double>& time = run.table.numbers("time");
