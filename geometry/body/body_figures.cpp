@@ -171,12 +171,15 @@ core::Figure section_figure(const SurfaceMesh& body, const std::string& name) {
     if (base.any) {
         const double y = 1e3 * box.lower.z - step;
         dimension(figure, 1e3 * base.x.low, y, 1e3 * base.x.high, y, tick, base.x.size());
+        // Under its line, where the axis makes room for it: over it is the room of protrusion and nozzle.
+        figure.notes.back().y -= step;
     }
     if (const PatchExtent bump = extent_of(body, "protrusion"); bump.any) {
-        const std::string length = mm(bump.x.size());  // one unit for both: the text has its room in a small picture
+        // One unit for both, in two lines: the text has its room within the body in a small picture.
+        const std::string length = mm(bump.x.size());
         figure.notes.push_back(
             {500 * (bump.x.low + bump.x.high), 1e3 * bump.z.high + 0.9 * step,
-             "protrusion " + length.substr(0, length.find(' ')) + " × " + mm(height_over_base(body, "protrusion"))});
+             "protrusion\n" + length.substr(0, length.find(' ')) + " × " + mm(height_over_base(body, "protrusion"))});
     }
     if (const PatchExtent nozzle = extent_of(body, "nozzle"); nozzle.any) {
         figure.notes.push_back(

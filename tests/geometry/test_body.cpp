@@ -235,5 +235,30 @@ TEST(Body, AllowedPitchesAreNamedOnlyWhereThereAreAny) {
     EXPECT_THAT(ridge, testing::Not(testing::HasSubstr("allowed pitch"))) << "was: 0 deg, which is refused";
 }
 
+// In a small picture the words of the protrusion had no place but on the line that tells how long the base is.
+TEST(BodyFigures, WordsOfASectionHaveRoomOfTheirOwn) {
+    const auto shape = read_shape(test::source_folder() / "cases/evie/shapes/ellipse_front_bump2.toml");
+    const auto figure = section_figure(make_surface(shape), "evie");
+    double line = 0;  // the lowest: of the base
+    for (const auto& curve : figure.curves) {
+        if (curve.y.size() == 2 && curve.y[0] == curve.y[1]) {
+            line = std::min(line, curve.y[0]);
+        }
+    }
+    ASSERT_LT(line, 0);
+    int words = 0;
+    for (const auto& note : figure.notes) {
+        if (note.text.starts_with("protrusion")) {
+            ++words;
+            EXPECT_EQ(note.text, "protrusion\n10 × 2 mm");
+            EXPECT_GT(note.y, 0);
+        } else if (note.y < 0) {
+            ++words;
+            EXPECT_LT(note.y, line) << note.text << " stands under its line";
+        }
+    }
+    EXPECT_EQ(words, 2);
+}
+
 }  // namespace
 }  // namespace underbody::geometry
