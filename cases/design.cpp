@@ -183,7 +183,9 @@ void Design::read_results(const fs::path& file) {
 
 RunOrigin Design::origin_now(const std::vector<double>& at, const std::string& fidelity) const {
     try {
-        return origin_of(spec_, base_, asked_for(spec_, base_, water_, at, fidelity));
+        RunOrigin now = origin_of(spec_, base_, asked_for(spec_, base_, water_, at, fidelity));
+        now.moments = moments_about(spec_, water_);
+        return now;
     } catch (const core::InputError&) {
         return {};  // no such shape
     }
@@ -254,13 +256,14 @@ void Design::note_unknown_sigmas() {
 core::Table Design::results_table(std::size_t first) const {
     core::Table table;
     const std::span<const DesignRun> runs = std::span(runs_).subspan(first);
-    std::vector<std::string> designs, fidelities, states, shapes, meshes;
+    std::vector<std::string> designs, fidelities, states, shapes, meshes, moments;
     for (const DesignRun& run : runs) {
         designs.push_back(run.design);
         fidelities.push_back(run.fidelity);
         states.push_back(run.state);
         shapes.push_back(run.origin.shape);
         meshes.push_back(run.origin.mesh);
+        moments.push_back(run.origin.moments);
     }
     table.add_text("design", designs);
     const auto all = spec_.all_variables();
@@ -282,6 +285,9 @@ core::Table Design::results_table(std::size_t first) const {
     table.add_text("shape_hash", shapes);
     table.add_text("fidelity", fidelities);
     table.add_text("mesh_settings", meshes);
+    if (has_moments(spec_)) {
+        table.add_text("moments_about", moments);
+    }
     for (const std::string& q : spec_.quantities) {
         std::vector<double> values, sigmas;
         for (const DesignRun& run : runs) {

@@ -45,6 +45,7 @@ struct RunOrigin {
     std::map<std::string, double> numbers;  ///< gap, pitch, speed, jet_flow, density, kinematic_viscosity; SI
     std::string shape;                      ///< hash of the shape whose numbers were varied, without them
     std::string mesh;                       ///< "blocks draft 800 iterations": how the mesh was made and solved on
+    std::string moments = {};               ///< "base_centre" or "0 0 0.005 m": the point that its moments are about
 };
 
 /// Of the study's, what the cases of a search are made with.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cases/design_file.h"
 #include "cases/sweep_parts.h"
 #include "core/counted.h"
 #include "core/error.h"
@@ -71,6 +72,10 @@ bool same_mesh(const RunOrigin& a, const RunOrigin& b) { return a.mesh.empty() |
 
 bool same_shape(const RunOrigin& a, const RunOrigin& b) {
     return a.shape.empty() || b.shape.empty() || a.shape == b.shape;
+}
+
+bool same_moments(const RunOrigin& a, const RunOrigin& b) {
+    return a.moments.empty() || b.moments.empty() || a.moments == b.moments;
 }
 
 /// "speed: 1 m/s there, 0.5 m/s now"
@@ -147,7 +152,12 @@ SolvedRuns solved_runs(const DesignSpec& spec) {
 class Settler {
 public:
     Settler(const DesignSpec& spec, const geometry::BodyShape& base, const DesignWater& water)
-        : spec_(spec), base_(base), water_(water), all_(spec.all_variables()), solved_(solved_runs(spec)) {}
+        : spec_(spec),
+          base_(base),
+          water_(water),
+          all_(spec.all_variables()),
+          solved_(solved_runs(spec)),
+          moments_now_(moments_about(spec, water)) {}
 
     void settle(DesignRun& run) const {
         static const std::vector<SolvedRun> none;
@@ -173,6 +183,10 @@ public:
             take_over(*found, other_shape, run);
         } else if (const auto now = asked(run.at, run.fidelity)) {
             fewest = differences_of(run.origin, origin_of(spec_, base_, *now));
+        }
+        // The case does not say it: its loads are taken about another point without solving it again.
+        if (!same_moments(run.origin, {{}, {}, {}, moments_now_})) {
+            fewest.push_back("moments_about: " + run.origin.moments + " there, " + moments_now_ + " now");
         }
         for (const std::string& one : fewest) {
             run.other += (run.other.empty() ? "" : "; ") + one;
@@ -246,6 +260,7 @@ private:
     const DesignWater& water_;
     std::vector<SearchVariable> all_;
     SolvedRuns solved_;
+    std::string moments_now_;
 };
 
 }  // namespace
@@ -276,12 +291,33 @@ std::vector<OriginNumber> origin_columns(const DesignSpec& spec) {
     return columns;
 }
 
+bool has_moments(const DesignSpec& spec) {
+    return std::any_of(spec.quantities.begin(), spec.quantities.end(), [](const std::string& quantity) {
+        return quantity.ends_with("_moment") && quantity != moment_at_buoyancy;
+    });
+}
+
+std::string moments_about(const DesignSpec& spec, const DesignWater& water) {
+    if (!has_moments(spec)) {
+        return {};
+    }
+    if (!water.moments_about) {
+        return "base_centre";
+    }
+    std::string point;
+    for (const double x : *water.moments_about) {
+        // The same number written in other units differs in its last bits.
+        point += (point.empty() ? "" : " ") + core::format_number(x == 0 ? 0.0 : x, 12);
+    }
+    return point + " m";
+}
+
 RunOrigin origin_of(const DesignSpec& spec, const geometry::BodyShape& base, const CaseRecord& record) {
     return {numbers_of(record), hash_of_base(spec, base), mesh_of(record)};
 }
 
 bool agree(const RunOrigin& a, const RunOrigin& b) {
-    return same_shape(a, b) && same_mesh(a, b) &&
+    return same_shape(a, b) && same_mesh(a, b) && same_moments(a, b) &&
            std::all_of(a.numbers.begin(), a.numbers.end(), [&](const auto& number) {
                const auto other = b.numbers.find(number.first);
                return other == b.numbers.end() || same_number(number.second, other->second);
@@ -324,6 +360,7 @@ void read_origins(const core::Table& table, const DesignSpec& spec, std::vector<
     };
     text("shape_hash", &RunOrigin::shape);
     text("mesh_settings", &RunOrigin::mesh);
+    text("moments_about", &RunOrigin::moments);
 }
 
 void settle_origins(const core::Table& table, const DesignSpec& spec, const geometry::BodyShape& base,
@@ -371,6 +408,9 @@ void note_silent_rows(const DesignSpec& spec, const std::string& file, const std
         }
         if (run.origin.mesh.empty()) {
             missing.emplace_back("mesh_settings");
+        }
+        if (has_moments(spec) && run.origin.moments.empty()) {
+            missing.emplace_back("moments_about");
         }
         silent += missing.empty() ? 0 : 1;
         unsaid = missing.size() > unsaid.size() ? missing : unsaid;

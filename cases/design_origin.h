@@ -16,7 +16,12 @@ struct OriginNumber {
 /// Those of them that are no variable of the search: columns of results.csv.
 std::vector<OriginNumber> origin_columns(const DesignSpec& spec);
 
-/// Of a case that is made of a shape of the search.
+/// One of the loads of the search is about the point of `[frame] moments_about`.
+bool has_moments(const DesignSpec& spec);
+/// That point as rows of results.csv say it; empty where no load is about it.
+std::string moments_about(const DesignSpec& spec, const DesignWater& water);
+
+/// Of a case that is made of a shape of the search, but for the point of its moments.
 RunOrigin origin_of(const DesignSpec& spec, const geometry::BodyShape& base, const CaseRecord& record);
 /// Of what is varied, whatever the varied numbers are. Empty where there is no such shape.
 std::string hash_of_base(const DesignSpec& spec, geometry::BodyShape shape);

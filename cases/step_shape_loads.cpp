@@ -1,4 +1,5 @@
 // Loads of the shapes that a [[table]] names, by the surrogates of [design].
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -21,6 +22,10 @@ std::string digest_of_search(const Engine& engine) {
     core::Hasher hash;
     hash.add(engine.path_in_study(spec.shape)).add(engine.path_in_study(spec.folder)).add(engine.study.symmetry);
     hash.add(engine.study.reference.number("density").value_or(NAN));
+    if (engine.study.moments_about) {
+        std::for_each(engine.study.moments_about->begin(), engine.study.moments_about->end(),
+                      [&](double x) { hash.add(x); });
+    }
     for (const auto& v : spec.variables) {
         hash.add(v.name).add(v.lower).add(v.upper).add(v.logarithmic ? 1 : 0);
     }

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/own_files.h"
+#include "core/text.h"
 
 namespace underbody::cases {
 namespace {
@@ -148,6 +149,53 @@ TEST_F(OriginsOfRows, RowsSayOfThemselvesWhatTheyAreOf) {
     const Design both = open();
     EXPECT_EQ(usable(both), 8u);
     EXPECT_DOUBLE_EQ(both.runs().front().at.back(), 0.5);
+}
+
+// The point is no part of a case: its loads are taken about another one without solving it again.
+TEST_F(OriginsOfRows, RowsSayAboutWhichPointTheirMomentsAre) {
+    EXPECT_EQ(open().results_table().find("moments_about"), nullptr) << "it has no moment";
+    put("study.toml", "[\"lift_force\"]", "[\"lift_force\", \"pitch_moment\"]");
+    const std::string lift_only = core::read_file(results());
+    std::string csv;
+    for (const auto line : core::split(lift_only, '\n')) {
+        if (const auto state = line.rfind(", "); state != std::string_view::npos) {
+            csv += std::string(line.substr(0, state)) +
+                   (csv.empty() ? ", pitch_moment [N m], pitch_moment_sigma [N m]" : ", 0.01, 0.001") +
+                   std::string(line.substr(state)) + "\n";
+        }
+    }
+    core::write_file(results(), csv);
+    ASSERT_EQ(open().notes.size(), 1u) << "rows of earlier versions count";
+    EXPECT_EQ(usable(open()), 8u);
+    EXPECT_EQ(open().notes.front().severity, core::Problem::Severity::note);
+    EXPECT_THAT(open().notes.front().message, HasSubstr("rows do not say all of moments_about: taken as what"));
+    core::Table table;
+    for (const core::Column& column : open().results_table().columns()) {
+        if (column.is_text()) {
+            table.add_text(column.name,
+                           column.name == "moments_about" ? std::vector<std::string>(8, "base_centre") : column.text);
+        } else {
+            table.add_numbers(column.name, column.unit, column.numbers, column.written_unit);
+        }
+    }
+    core::write_csv(results(), table);
+    EXPECT_EQ(usable(open()), 8u);
+    EXPECT_TRUE(open().notes.empty());
+    put("study.toml", "[frame]\n", "[frame]\nmoments_about = [\"0 m\", \"0 m\", \"5 mm\"]\n");
+    EXPECT_THAT(said(open()), HasSubstr("left out: 8 (moments_about: base_centre there, 0 0 0.005 m now)"));
+    EXPECT_EQ(open().results_table().text("moments_about").front(), "base_centre") << "rows stay what they are of";
+    std::string of_point = core::read_file(results());
+    for (auto at = of_point.find("base_centre"); at != std::string::npos; at = of_point.find("base_centre")) {
+        of_point.replace(at, 11, "0 0 0.005 m");
+    }
+    core::write_file(results(), of_point);
+    EXPECT_EQ(usable(open()), 8u);
+    put("study.toml", "\"5 mm\"]\nsymmetry", "\"0.5 cm\"]\nsymmetry");
+    EXPECT_EQ(usable(open()), 8u) << "the same in another unit";
+    put("study.toml", "\"0.5 cm\"]\nsymmetry", "\"6 mm\"]\nsymmetry");
+    EXPECT_EQ(usable(open()), 0u);
+    put("study.toml", ", \"pitch_moment\"]", "]");
+    EXPECT_EQ(usable(open()), 8u) << "a force has no such point";
 }
 
 TEST_F(OriginsOfRows, AConditionThatComesToVaryIsSaidByTheRuns) {
