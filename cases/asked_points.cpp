@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cases/design_file.h"
 #include "core/text.h"
 #include "core/told.h"
 
@@ -11,10 +12,6 @@ namespace underbody::cases {
 using tables::SearchVariable;
 
 namespace {
-
-bool has(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 std::vector<std::string> names_of(const std::vector<SearchVariable>& variables) {
     std::vector<std::string> names;

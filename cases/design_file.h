@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace underbody::cases {
 
@@ -11,6 +12,10 @@ inline std::string one_field(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == ',' || c == '\n' || c == '"'; }, ';');
     return text;
+}
+
+inline bool has(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 inline constexpr const char* not_settled_state = "not settled";

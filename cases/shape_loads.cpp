@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cases/design.h"
+#include "cases/design_file.h"
 #include "core/counted.h"
 #include "core/text.h"
 #include "geometry/body/variants.h"
@@ -32,10 +33,6 @@ std::vector<double> grid_of(const SearchVariable& v, std::size_t axes) {
         grid.push_back(v.unscaled(static_cast<double>(i) / static_cast<double>(steps)));
     }
     return grid;
-}
-
-bool has(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /// The shape of the search that is most like it: at its own varied numbers, where there is one.
