@@ -16,6 +16,8 @@
 #include <QSplitter>
 #include <QTimer>
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "cases/export_files.h"
 #include "cases/prove_export.h"
@@ -37,8 +39,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* proof_slot = "export proof";
-
 QString said_of(const std::exception_ptr& error) {
     const Told told = tell(error);
     return told.message + (told.hint.isEmpty() ? "" : "\n" + told.hint);
@@ -57,6 +57,12 @@ ExportDialog::ExportDialog(Jobs& jobs, std::shared_ptr<const tables::ForceTable>
     const QString found = of_.found.empty() ? QString() : " with " + qt(of_.found).replace('_', ' ');
     setWindowTitle("Export " + qt(table_->quantity()).replace('_', ' ') + found + " for a controller");
     resize(1060, 660);
+    connect(this, &QDialog::finished, this, [this] {
+        closed_ = true;
+        jobs_.cancel(slot("preview"));
+        jobs_.cancel(slot("proof"));
+        soon_->stop();
+    });
     soon_ = new QTimer(this);
     soon_->setSingleShot(true);
     soon_->setInterval(80);
@@ -161,7 +167,7 @@ void ExportDialog::add_buttons(QBoxLayout& column) {
     buttons->addWidget(close_button);
     column.addLayout(buttons);
     connect(prove_, &QPushButton::clicked, this,
-            [this] { jobs_.busy(proof_slot) ? jobs_.cancel(proof_slot) : prove(); });
+            [this] { jobs_.busy(slot("proof")) ? jobs_.cancel(slot("proof")) : prove(); });
     connect(&jobs_, &Jobs::changed, this, &ExportDialog::show_proof_running);
     connect(write_all_, &QPushButton::clicked, this, [this] {
         try {
@@ -172,6 +178,11 @@ void ExportDialog::add_buttons(QBoxLayout& column) {
     });
     connect(write_button, &QPushButton::clicked, this, &ExportDialog::choose_and_write);
     connect(close_button, &QPushButton::clicked, this, &QDialog::close);
+}
+
+/// Two dialogs may be open: neither stops the work of the other.
+QString ExportDialog::slot(const char* work) const {
+    return QString("export %1 %2").arg(work).arg(reinterpret_cast<quintptr>(this));
 }
 
 std::string ExportDialog::format() const { return format_->currentData().toString().toStdString(); }
@@ -186,12 +197,14 @@ tables::ExportOptions ExportDialog::options() const {
     } else if (as_fitted() && !of_.origin.empty()) {
         options.provenance = {of_.origin};
     }
-    if (const std::string text = max_error_->text().trimmed().remove('%').toStdString(); !text.empty()) {
-        const double percent = core::parse_in(text, "1");
-        if (!(percent > 0 && percent < 100)) {
+    if (const std::string text = max_error_->text().trimmed().toStdString(); !text.empty()) {
+        // A bare number is per cent, as the row says; "5 percent" says it itself.
+        const bool bare = core::parse_quantity(text).unit.empty();
+        const double share = core::parse_in(text, "1") / (bare ? 100 : 1);
+        if (!(share > 0 && share < 1)) {
             throw core::UsageError("range", "the error allowed is a share between 0 and 100 %");
         }
-        options.max_error = percent / 100;
+        options.max_error = share;
     }
     return options;
 }
@@ -247,8 +260,8 @@ void ExportDialog::set_marked(const QStringList& tables) {
 }
 
 void ExportDialog::refresh() {
-    jobs_.cancel(proof_slot);  // of what stood there before
-    proof_->clear();
+    jobs_.cancel(slot("proof"));  // of what stood there before
+    proof_->setText(writing_ > 0 ? "writing …" : "");
     prove_->setEnabled(format() == "c");
     format_->setToolTip(format_->currentText());  // longer than its place
     for (const auto& [axis, policy] : policies_) {
@@ -259,14 +272,14 @@ void ExportDialog::refresh() {
         ask_preview(options());
         command_->setText(command("FILE"));
     } catch (const core::Error& error) {
-        jobs_.cancel("export preview");  // of what stood there before
+        jobs_.cancel(slot("preview"));  // of what stood there before
         facts_->setText(qt(error.what()));
     }
 }
 
 void ExportDialog::ask_preview(const tables::ExportOptions& wanted) {
     jobs_.start(
-        "export preview", "preview",
+        slot("preview"), "preview",
         [self = QPointer<ExportDialog>(this), wanted, make = make_, range = range(),
          kind = format()](core::Progress& progress) {
             ExportPreview seen;
@@ -295,35 +308,62 @@ QString ExportDialog::command(const QString& path) const {
     return qt(of_.line(of_.command(table_->quantity(), path.toStdString(), record())));
 }
 
+/// How the writing of a file ended; neither is there where it was stopped.
+struct ExportDialog::Ended {
+    std::optional<ExportRecord> done;
+    std::exception_ptr error;
+};
+
 void ExportDialog::write(const fs::path& path) {
     tables::ExportOptions wanted = options();
     wanted.overwrite = true;  // the person was asked
     proof_->setText("writing …");
-    jobs_.start("export write", "writing " + qt(path.filename().string()),
-                [self = QPointer<ExportDialog>(this), wanted, path, record = record(), make = make_, range = range(),
-                 line = command(qt(path.string()))](core::Progress& progress) -> std::function<void()> {
-                    ExportRecord done = record;
-                    try {
-                        tables::export_table(make(range, progress), record.format, path, wanted, progress);
-                        done.written = core::content_hash(core::read_file(path));
-                    } catch (const core::Cancelled&) {
-                        throw;
-                    } catch (const core::Error&) {  // said in the dialog, not behind it
-                        return [self, path, error = std::current_exception()] {
-                            if (self) {
-                                self->proof_->setText("Not written: " + said_of(error));
-                                Q_EMIT self->failed("writing " + qt(path.string()), error);
-                            }
-                        };
-                    }
-                    return [self, path, done, line] {
-                        if (self) {
-                            self->proof_->setText("Wrote " + qt(path.string()));
-                            Q_EMIT self->exported(qt(path.string()), done);
-                            Q_EMIT self->written(line);
-                        }
-                    };
-                });
+    ++writing_;
+    setAttribute(Qt::WA_DeleteOnClose, false);  // what is written is told, also when the dialog is closed meanwhile
+    const auto ended = std::make_shared<Ended>();
+    jobs_.start(
+        slot("write") + " " + qt(path.string()), "writing " + qt(path.filename().string()),
+        [ended, wanted, path, record = record(), make = make_,
+         range = range()](core::Progress& progress) -> std::function<void()> {
+            try {
+                ExportRecord done = record;
+                tables::export_table(make(range, progress), record.format, path, wanted, progress);
+                done.written = core::content_hash(core::read_file(path));
+                ended->done = done;
+                return [] {};
+            } catch (const core::Cancelled&) {
+                throw;
+            } catch (...) {  // said in the dialog, not behind it
+                ended->error = std::current_exception();
+                return {};
+            }
+        },
+        false,
+        [self = QPointer<ExportDialog>(this), ended, path = qt(path.string()), line = command(qt(path.string()))] {
+            if (self) {
+                self->show_written(path, *ended, line);
+            }
+        });
+}
+
+void ExportDialog::show_written(const QString& path, const Ended& ended, const QString& line) {
+    --writing_;
+    if (ended.done) {
+        proof_->setText("Wrote " + path);
+        Q_EMIT exported(path, *ended.done);
+        Q_EMIT written(line);
+    } else if (ended.error) {
+        proof_->setText("Not written: " + said_of(ended.error));
+        Q_EMIT failed("writing " + path, ended.error);
+    } else {
+        proof_->setText("Not written: stopped");
+    }
+    if (writing_ == 0) {
+        setAttribute(Qt::WA_DeleteOnClose);
+        if (closed_) {
+            deleteLater();
+        }
+    }
 }
 
 void ExportDialog::choose_and_write() {
@@ -348,7 +388,6 @@ void ExportDialog::choose_and_write() {
 void ExportDialog::write_to(const QString& path) {
     try {
         write(path.toStdString());
-        proof_->setText("Wrote " + path);
     } catch (...) {
         proof_->setText("Not written: " + said_of(std::current_exception()));
         Q_EMIT failed("writing " + path, std::current_exception());
@@ -369,7 +408,7 @@ void ExportDialog::prove() {
 
 void ExportDialog::ask_proof(const tables::ExportOptions& wanted) {
     proof_->setText("Not proved: stopped");  // until it is
-    jobs_.start(proof_slot, "proving " + qt(wanted.name) + ".h",
+    jobs_.start(slot("proof"), "proving " + qt(wanted.name) + ".h",
                 [self = QPointer<ExportDialog>(this), wanted, make = make_, range = range()](core::Progress& progress) {
                     cases::Proof proof;
                     try {
@@ -391,12 +430,12 @@ void ExportDialog::ask_proof(const tables::ExportOptions& wanted) {
 
 /// While it runs the button stops it.
 void ExportDialog::show_proof_running() {
-    const bool running = jobs_.busy(proof_slot);
+    const bool running = jobs_.busy(slot("proof"));
     prove_->setText(running ? "Sto&p proving" : "&Prove");
     proving_->setVisible(running);
     proof_->setVisible(!running);
     for (const auto& row : jobs_.rows()) {
-        if (row.what.startsWith("proving ")) {
+        if (row.slot == slot("proof")) {
             proving_->setFormat(row.doing.isEmpty() ? "proving …" : row.doing + " …");
             proving_->setValue(static_cast<int>(1000 * row.fraction));
         }

@@ -37,7 +37,7 @@ public:
                  Make make = {});
     /// The command that writes the same.
     [[nodiscard]] QString command(const QString& path) const;
-    /// Writes in a job; throws core::Error where the choices are wrong.
+    /// Writes in a job, which goes on when the dialog is closed; throws core::Error where the choices are wrong.
     void write(const std::filesystem::path& path);
     /// As the button does: what stands in the way is said in the dialog.
     void write_to(const QString& path);
@@ -61,6 +61,7 @@ Q_SIGNALS:
     void proved(bool equal);
 
 private:
+    struct Ended;
     void build();
     void add_choices(QFormLayout& form);
     void add_policies(QFormLayout& form);
@@ -69,6 +70,9 @@ private:
     void ask_preview(const tables::ExportOptions& wanted);
     void ask_proof(const tables::ExportOptions& wanted);
     void show_proof_running();
+    void show_written(const QString& path, const Ended& ended, const QString& line);
+    /// Of the jobs of this dialog alone.
+    [[nodiscard]] QString slot(const char* work) const;
     void choose_and_write();
     [[nodiscard]] std::string format() const;
     [[nodiscard]] tables::ExportOptions options() const;
@@ -96,6 +100,8 @@ private:
     QProgressBar* proving_ = nullptr;
     QLabel* command_ = nullptr;
     QTimer* soon_ = nullptr;
+    int writing_ = 0;  ///< files that are being written
+    bool closed_ = false;
 };
 
 }  // namespace underbody::studio

@@ -147,8 +147,8 @@ std::vector<Jobs::Row> Jobs::rows() const {
     std::vector<Row> rows;
     for (const auto& job : running_) {
         if (!job->quiet && !job->dropped) {
-            rows.push_back(
-                {job->id, job->what, job->doing, job->fraction, static_cast<double>(job->since.elapsed()) / 1000});
+            rows.push_back({job->id, job->slot, job->what, job->doing, job->fraction,
+                            static_cast<double>(job->since.elapsed()) / 1000});
         }
     }
     return rows;

@@ -25,6 +25,7 @@ public:
     /// A job that runs, for the list of jobs.
     struct Row {
         int id = 0;
+        QString slot;
         QString what;
         QString doing;
         double fraction = 0;

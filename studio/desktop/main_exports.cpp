@@ -149,8 +149,8 @@ void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& ta
         *jobs_, table, this, of,
         of.found.empty()
             ? ExportDialog::Make()
-            : [session = desk_->session_pointer(), name = of.name](const auto& range, core::Progress& progress) {
-                  return exported_table(*session, name, range, progress);
+            : [session = desk_->session_pointer(), name = of.name, table](const auto& range, core::Progress& progress) {
+                  return range.empty() ? *table : exported_table(*session, name, range, progress);
               });
     const auto mark = [this, dialog] {
         QStringList names;
@@ -165,12 +165,13 @@ void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& ta
             [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
     const std::string made_of =
         table_digest(desk_->session(), of.name);  // of what is written, whatever changes meanwhile
-    connect(dialog, &ExportDialog::exported, this, [this, made_of](const QString& path, ExportRecord record) {
-        if (!record.table.empty()) {
-            record.made_of = made_of;
-            desk_->act(words_of_export(path.toStdString(), record));
-        }
-    });
+    connect(dialog, &ExportDialog::exported, this,
+            [this, made_of, study = desk_->session().folder](const QString& path, ExportRecord record) {
+                if (!record.table.empty()) {
+                    record.made_of = made_of;
+                    keep_exports({{path.toStdString(), record}}, study);
+                }
+            });
     connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
     connect(dialog, &ExportDialog::all_wanted, this, [this](const ExportRecord& how) {
         const QString folder =
@@ -215,6 +216,12 @@ void MainWindow::export_stale() {
     write_exports(files);
 }
 
+/// Of several files that are written by one job.
+struct MainWindow::EndedExports {
+    ExportedFiles done;
+    std::vector<std::pair<std::string, std::exception_ptr>> failed;
+};
+
 /// All in one job and one step of the history; what others have written is not replaced unasked.
 bool MainWindow::write_exports(const ExportedFiles& files) {
     std::vector<std::string> paths;
@@ -232,23 +239,53 @@ bool MainWindow::write_exports(const ExportedFiles& files) {
              foreign.size() > 1 ? "Replace them" : "Replace it")) {
         return false;
     }
+    const auto ended = std::make_shared<EndedExports>();
     jobs_->start(
         "export again", QString("writing %1 exports").arg(files.size()),
-        [this, files, session = desk_->session_pointer()](core::Progress& progress) {
-            ExportedFiles done;
+        [ended, files, session = desk_->session_pointer()](core::Progress& progress) -> std::function<void()> {
             for (const auto& [file, record] : files) {
-                progress.report(static_cast<double>(done.size()) / static_cast<double>(files.size()), file);
+                progress.report(
+                    static_cast<double>(ended->done.size() + ended->failed.size()) / static_cast<double>(files.size()),
+                    file);
                 progress.check();
-                done.emplace_back(file, export_again(*session, file, record, progress));
-            }
-            return [this, done] {
-                if (desk_->act(words_of_exports(done))) {
-                    const auto& step = desk_->history().steps().at(desk_->history().position() - 1);
-                    problems_->note(QString("Wrote %1 exports. The same: ").arg(done.size()) + qt(step.command));
+                try {
+                    ended->done.emplace_back(file, export_again(*session, file, record, progress));
+                } catch (const core::Cancelled&) {
+                    throw;
+                } catch (...) {  // the others are written
+                    ended->failed.emplace_back(file, std::current_exception());
                 }
-            };
-        });
+            }
+            return ended->failed.empty() ? std::function<void()>([] {}) : nullptr;
+        },
+        false, [this, ended, of = files.size(), study = desk_->session().folder] { show_exports(*ended, of, study); });
     return true;
+}
+
+/// What was written is kept, whatever became of the others.
+void MainWindow::show_exports(const EndedExports& ended, std::size_t of, const fs::path& study) {
+    const std::size_t written = ended.done.size();
+    const QString count =
+        written == of ? QString("Wrote %1 exports.").arg(of) : QString("Wrote %1 of %2 exports.").arg(written).arg(of);
+    if (written > 0 && keep_exports(ended.done, study)) {
+        const auto& step = desk_->history().steps().at(desk_->history().position() - 1);
+        problems_->note(count + " The same: " + qt(step.command));
+    } else {
+        problems_->note(count);
+    }
+    for (const auto& [file, error] : ended.failed) {
+        show_failure("writing " + QFileInfo(qt(file)).fileName(), error);
+    }
+}
+
+/// As a step of the history, where the study is still open that they are of.
+bool MainWindow::keep_exports(const ExportedFiles& files, const fs::path& study) {
+    if (desk_->session().folder != study) {
+        problems_->note("What was written is of " + qt(study.string()) +
+                        ", which is no longer open: it is not among its exports.");
+        return false;
+    }
+    return desk_->act(words_of_exports(files));
 }
 
 void MainWindow::copy_picture() { QApplication::clipboard()->setImage(current()->picture_to_copy()); }

@@ -129,7 +129,11 @@ private:
     void export_table();
     void export_controller();
     void show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of);
+    struct EndedExports;
     bool write_exports(const std::vector<std::pair<std::string, ExportRecord>>& files);
+    void show_exports(const EndedExports& ended, std::size_t of, const std::filesystem::path& study);
+    bool keep_exports(const std::vector<std::pair<std::string, ExportRecord>>& files,
+                      const std::filesystem::path& study);
     void ask_for_cfd();
     void say_what_is_stale();
     void save_session(bool elsewhere);

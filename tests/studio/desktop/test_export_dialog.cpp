@@ -14,10 +14,15 @@
 #include <QSignalSpy>
 #include <QTest>
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <map>
+#include <memory>
+#include <thread>
 
 #include "core/file.h"
 #include "studio/desktop/export_dialog.h"
+#include "studio/desktop/export_preview.h"
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/main_window.h"
 #include "studio/desktop/plot_view.h"
@@ -248,6 +253,127 @@ TEST_F(Window, AllMarkedTablesAreWritten) {
         ASSERT_TRUE(fs::exists(file)) << command.toStdString();
         EXPECT_EQ(numbers(core::read_file(file)), numbers(texts[file])) << file;
     }
+}
+
+// "Wrote" is said when it is, and a write that is stopped says so.
+TEST_F(Window, AnExportIsSaidToBeWrittenWhenItIs) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    const auto go = std::make_shared<std::atomic<bool>>(true);
+    const auto table = panel<ForcePanel>().table();
+    auto* dialog = new ExportDialog(window_->jobs(), table, window_.get(), {},
+                                    [go, table](const auto& range, core::Progress& progress) {
+                                        while (!*go) {
+                                            progress.check();
+                                            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                        }
+                                        return refitted(*table, range);
+                                    });
+    settle(*window_);
+    *go = false;
+    const fs::path file = folder_.path() / "lift.h";
+    dialog->write_to(QString::fromStdString(file.string()));
+    QTest::qWait(20);
+    EXPECT_EQ(dialog->proof(), "writing …");
+    window_->jobs().cancel();
+    settle(*window_);
+    EXPECT_EQ(dialog->proof(), "Not written: stopped");
+    EXPECT_FALSE(fs::exists(file));
+    dialog->write_to(QString::fromStdString(file.string()));
+    *go = true;
+    settle(*window_);
+    EXPECT_EQ(dialog->proof().toStdString(), "Wrote " + file.string());
+    EXPECT_TRUE(fs::exists(file));
+    delete dialog;
+}
+
+// What a closed dialog was writing is a step of the history, and is told.
+TEST_F(Window, AnExportOfAClosedDialogIsKept) {
+    open(copy_of_study());
+    act("workspace tables");
+    act("select table/lift");
+    settle(*window_);
+    for (auto* action : window_->actions()) {
+        if (action->shortcut() == QKeySequence("Ctrl+E")) {
+            action->trigger();
+        }
+    }
+    settle(*window_);
+    auto* dialog = window_->findChild<ExportDialog*>();
+    ASSERT_NE(dialog, nullptr) << window_->last_error().toStdString();
+    const auto steps = window_->desk().history().steps().size();
+    const fs::path file = folder_.path() / "lift.h";
+    dialog->write(file);
+    dialog->close();
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);  // as the loop of the program does at once
+    settle(*window_);
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);
+    EXPECT_EQ(window_->findChild<ExportDialog*>(), nullptr) << "it is gone then";
+    ASSERT_TRUE(fs::exists(file));
+    ASSERT_EQ(window_->desk().history().steps().size(), steps + 1);
+    EXPECT_EQ(window_->desk().state().exports.count(file.string()), 1U);
+    EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
+}
+
+// They stopped one another's previews and proofs.
+TEST_F(Window, TwoExportDialogsDoNotStopEachOther) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    auto* one = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get());
+    auto* other = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get());
+    settle(*window_);
+    EXPECT_FALSE(one->preview().isEmpty());
+    EXPECT_FALSE(other->preview().isEmpty());
+    one->prove();
+    other->prove();
+    settle(*window_);
+    for (auto* dialog : {one, other}) {
+        EXPECT_TRUE(dialog->proof().startsWith("Compiled, run and equal")) << dialog->proof().toStdString();
+        delete dialog;
+    }
+}
+
+TEST_F(Window, TheErrorAllowedIsPerCentHoweverItIsTyped) {
+    open(computed_study());
+    act("workspace tables");
+    settle(*window_);
+    auto* dialog = new ExportDialog(window_->jobs(), panel<ForcePanel>().table(), window_.get());
+    for (const char* text : {"5", "5%", "5 %", "5 percent"}) {
+        dialog->findChild<QLineEdit*>("largest error")->setText(text);
+        EXPECT_DOUBLE_EQ(dialog->record().max_error.value_or(0), 0.05) << text;
+    }
+    dialog->findChild<QLineEdit*>("largest error")->setText("5 mm");
+    EXPECT_THROW(dialog->record(), core::InputError);
+    delete dialog;
+}
+
+// One that cannot be written does not take the others with it.
+TEST_F(Window, MarkedTablesAreWrittenThoughOneFails) {
+    const fs::path out = folder_.path() / "out";
+    open(with_drag(copy_of_study()));
+    act("workspace tables");
+    act("select table/lift 'table/drag, level'");
+    settle(*window_);
+    fs::create_directories(out / "lift.h" / "a folder of that name");
+    answer_ = true;
+    ExportRecord how;
+    how.format = "c";
+    how.frame = "up";
+    how.number = "double";
+    const auto steps = window_->desk().history().steps().size();
+    EXPECT_TRUE(window_->write_marked(how, out));
+    settle(*window_);
+    EXPECT_TRUE(fs::exists(out / "drag__level.h"));
+    ASSERT_EQ(window_->desk().history().steps().size(), steps + 1);
+    const auto& exports = window_->desk().state().exports;
+    ASSERT_EQ(exports.size(), 1U);
+    EXPECT_EQ(exports.begin()->second.table, "drag, level");
+    EXPECT_TRUE(window_->last_error().contains("lift.h")) << window_->last_error().toStdString();
+    auto* banner = window_->findChild<Banner*>();
+    ASSERT_NE(banner, nullptr);
+    EXPECT_TRUE(banner->isVisibleTo(window_.get())) << "it says which, and why";
 }
 
 }  // namespace
