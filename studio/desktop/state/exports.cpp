@@ -44,8 +44,48 @@ std::string origin_of(const Session& session, const cases::TableSpec& spec) {
     return {};
 }
 
+/// Size and time of the files of the models that may change a force: a study's own that was written meanwhile counts.
+std::string stamp_of(const Session& session) {
+    namespace fs = std::filesystem;
+    std::string stamp;
+    for (const auto& one : session.study.measurements) {
+        if (!session.accepted.contains(one.name) &&
+            !cases::same_place(one.model, session.study.folder() / cases::accepted_model(one.name))) {
+            continue;
+        }
+        std::vector<std::string> files;
+        std::error_code none;
+        for (const auto& entry : fs::directory_iterator(one.model.parent_path(), none)) {
+            files.push_back(entry.path().string() + " " + std::to_string(entry.file_size(none)) + " " +
+                            std::to_string(entry.last_write_time(none).time_since_epoch().count()) + "\n");
+        }
+        std::sort(files.begin(), files.end());
+        stamp += one.name + "\n";
+        for (const auto& file : files) {
+            stamp += file;
+        }
+    }
+    return stamp;
+}
+
+KnownForces::Known known_of(const Session& session, const cases::TableSpec& spec) {
+    const std::string stamp = stamp_of(session);
+    if (const auto known = session.known_forces.of(spec.name, stamp)) {
+        return *known;
+    }
+    KnownForces::Known known{stamp, cases::found_force(session.study, session.results, spec, session.accepted), {}};
+    try {
+        known.digest =
+            core::content_hash(spec.fit + "\n" + core::write_csv(cases::table_points(spec, session.results)) +
+                               (known.found ? "\n" + known.found->digest : ""));
+    } catch (const core::InputError&) {  // its own step says why
+    }
+    session.known_forces.keep(spec.name, known);
+    return known;
+}
+
 std::optional<cases::FoundForce> found_of(const Session& session, const cases::TableSpec& spec) {
-    return cases::found_force(session.study, session.results, spec, session.accepted);
+    return known_of(session, spec).found;
 }
 
 const cases::TableSpec& needed_table(const Session& session, const std::string& table) {
@@ -56,17 +96,23 @@ const cases::TableSpec& needed_table(const Session& session, const std::string& 
     return *spec;
 }
 
-/// Those policies that are not the ones of the table.
-tables::RangePolicies other_policies(const tables::ForceTable& table, const std::map<std::string, std::string>& range) {
-    tables::RangePolicies others;
-    for (const auto& axis : table.axes()) {
-        const auto at = range.find(axis.name);
-        const auto known = at == range.end() ? std::nullopt : tables::range_policy(at->second);
-        if (known && *known != axis.range) {
-            others.named.emplace_back(axis.name, *known);
+/// The policies of the table's axes among these.
+tables::RangePolicies policies_of(const cases::TableSpec& spec, const std::map<std::string, std::string>& range) {
+    tables::RangePolicies policies;
+    for (const auto& axis : spec.axes) {
+        const auto at = range.find(axis);
+        if (const auto known = at == range.end() ? std::nullopt : tables::range_policy(at->second)) {
+            policies.named.emplace_back(axis, *known);
         }
     }
-    return others;
+    return policies;
+}
+
+/// None of them is another one than the study's own.
+bool as_the_study(const cases::TableSpec& spec, const tables::RangePolicies& policies) {
+    const tables::RangePolicies own = cases::fit_options(spec).range;
+    return std::all_of(policies.named.begin(), policies.named.end(),
+                       [&](const auto& named) { return named.second == own.of(named.first); });
 }
 
 }  // namespace
@@ -76,13 +122,7 @@ std::string table_digest(const Session& session, const std::string& table) {
     if (spec == nullptr) {
         return {};
     }
-    try {
-        const auto found = found_of(session, *spec);
-        return core::content_hash(spec->fit + "\n" + core::write_csv(cases::table_points(*spec, session.results)) +
-                                  (found ? "\n" + found->digest : ""));
-    } catch (const core::InputError&) {  // its own step says why
-        return {};
-    }
+    return known_of(session, *spec).digest;
 }
 
 ExportState state_of(const Session& session, const std::string& file, const ExportRecord& record) {
@@ -129,20 +169,13 @@ std::vector<std::string> foreign_files(const State& state, const std::vector<std
 tables::ForceTable exported_table(const Session& session, const std::string& table,
                                   const std::map<std::string, std::string>& range, core::Progress& progress) {
     const auto& spec = needed_table(session, table);
+    const auto policies = policies_of(spec, range);
     if (const auto found = found_of(session, spec)) {
-        const auto made = cases::table_of_found(*found, spec, {}, progress);
-        const auto others = other_policies(made, range);
-        return others.named.empty() ? made : cases::table_of_found(*found, spec, others, progress);
+        return cases::table_of_found(*found, spec, policies, progress);
     }
-    const auto points = cases::table_points(spec, session.results);
     tables::FitOptions fit = cases::fit_options(spec);
-    auto fitted = tables::ForceTable::fit(points, spec.quantity, fit);
-    const auto others = other_policies(fitted, range);
-    if (!others.named.empty()) {
-        fit.range.named.insert(fit.range.named.end(), others.named.begin(), others.named.end());
-        fitted = tables::ForceTable::fit(points, spec.quantity, fit);
-    }
-    return fitted;
+    fit.range.named.insert(fit.range.named.begin(), policies.named.begin(), policies.named.end());
+    return tables::ForceTable::fit(cases::table_points(spec, session.results), spec.quantity, fit);
 }
 
 tables::ExportOptions options_of(const ExportRecord& record) {
@@ -158,16 +191,15 @@ tables::ExportOptions options_of(const ExportRecord& record) {
 ExportRecord export_again(const Session& session, const std::string& file, ExportRecord record,
                           core::Progress& progress) {
     tables::ExportOptions options = options_of(record);
-    const auto as_fitted = exported_table(session, record.table, {}, progress);
-    const bool as_the_study = other_policies(as_fitted, record.range).named.empty();
+    const auto& spec = needed_table(session, record.table);
     const TableOfStudy of = table_of_study(session, record.table);
     if (!of.found.empty()) {
         options.provenance = {of.found_line()};
-    } else if (as_the_study && !of.origin.empty()) {
+    } else if (as_the_study(spec, policies_of(spec, record.range)) && !of.origin.empty()) {
         options.provenance = {of.origin};
     }
-    const auto table = as_the_study ? as_fitted : exported_table(session, record.table, record.range, progress);
-    tables::export_table(table, record.format, file, options, progress);
+    tables::export_table(exported_table(session, record.table, record.range, progress), record.format, file, options,
+                         progress);
     record.made_of = table_digest(session, record.table);
     record.written = core::content_hash(core::read_file(file));
     return record;

@@ -39,6 +39,17 @@ void add_bodies(Session& session) {
 
 }  // namespace
 
+std::optional<KnownForces::Known> KnownForces::of(const std::string& table, const std::string& stamp) const {
+    const std::lock_guard lock(mutex_);
+    const auto at = known_.find(table);
+    return at == known_.end() || at->second.stamp != stamp ? std::nullopt : std::optional(at->second);
+}
+
+void KnownForces::keep(const std::string& table, const Known& known) const {
+    const std::lock_guard lock(mutex_);
+    known_[table] = known;
+}
+
 SessionPointer open_session(const fs::path& folder, const std::vector<std::string>& files) {
     auto session = std::make_shared<Session>();
     if (!folder.empty()) {

@@ -4,15 +4,38 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cases/found_force.h"
 #include "cases/study.h"
 #include "core/error.h"
 #include "geometry/body/body_shape.h"
 
 namespace underbody::studio {
+
+/// What was found of the tables of a session: to know it models are read and their tables fitted, and it is asked for
+/// whenever the tree or an export is shown. Another session begins without, a copy too.
+class KnownForces {
+public:
+    struct Known {
+        std::string stamp;  ///< of the models' files as they were read
+        std::optional<cases::FoundForce> found;
+        std::string digest;  ///< table_digest()
+    };
+    KnownForces() = default;
+    KnownForces(const KnownForces&) {}
+    KnownForces& operator=(const KnownForces&) = delete;
+    [[nodiscard]] std::optional<Known> of(const std::string& table, const std::string& stamp) const;
+    void keep(const std::string& table, const Known& known) const;
+
+private:
+    mutable std::mutex mutex_;  // jobs ask too
+    mutable std::map<std::string, Known> known_;
+};
 
 struct Session {
     std::filesystem::path folder;  ///< of the study, absolute; empty: none is open
@@ -24,6 +47,7 @@ struct Session {
     core::Problems problems;                  ///< shapes that cannot be read
     std::set<std::string> accepted;           ///< measurements whose found model stands in `study`
     std::shared_ptr<const Session> declared;  ///< without them; nullptr: this one
+    KnownForces known_forces;
 };
 
 using SessionPointer = std::shared_ptr<const Session>;

@@ -1,6 +1,7 @@
 // Exports of a study's tables: of which force they are, when they are stale, and how they are made again.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -98,6 +99,38 @@ TEST_F(FoundRoughness, ChangesTheForceThatIsExported) {
     EXPECT_EQ(run.exit_code, 0) << run.errors;
     const auto numbers = [](const std::string& text) { return text.substr(text.find("#ifndef")); };
     EXPECT_EQ(numbers(core::read_file(by_command)), numbers(core::read_file(file)));
+}
+
+// The tree asks for the digests of all exports again and again: models are read once as long as they stay as they are.
+TEST_F(FoundRoughness, IsReadOnceAsLongAsItsFilesStay) {
+    const SessionPointer with = with_models(session_, {"tank"});
+    const std::string before = table_digest(*with, "lift");
+    EXPECT_NE(before, table_digest(*session_, "lift"));
+    const fs::path model = with->study.measurements.front().model;
+    const auto time = fs::last_write_time(model);
+    const std::string text = core::read_file(model);
+    std::string other = text;
+    other.replace(other.find("near = 0.2"), 10, "near = 0.3");
+    core::write_file(model, other);
+    fs::last_write_time(model, time);
+    EXPECT_EQ(table_digest(*with, "lift"), before) << "of that size and time it is not read again";
+    const SessionPointer again = std::make_shared<Session>(*with);
+    EXPECT_NE(table_digest(*again, "lift"), before) << "another session reads it";
+    fs::last_write_time(model, time + std::chrono::seconds(2));
+    EXPECT_EQ(table_digest(*with, "lift"), table_digest(*again, "lift")) << "what was written meanwhile counts";
+}
+
+TEST_F(FoundRoughness, PoliciesBeyondTheEndsAreThoseThatAreAskedFor) {
+    core::Progress& nobody = core::Progress::none();
+    const SessionPointer with = with_models(session_, {"tank"});
+    for (const Session* session : {session_.get(), with.get()}) {
+        const auto own = exported_table(*session, "lift", {}, nobody);
+        EXPECT_EQ(own.axes().front().range, tables::RangePolicy::clamp);
+        const auto other = exported_table(*session, "lift", {{"gap", "extrapolate"}, {"pitch", "refuse"}}, nobody);
+        EXPECT_EQ(other.axes().front().range, tables::RangePolicy::extrapolate);
+        const double gap = 0.004;
+        EXPECT_NEAR(other.value(&gap), own.value(&gap), 1e-12);
+    }
 }
 
 }  // namespace
