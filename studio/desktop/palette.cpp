@@ -8,6 +8,7 @@
 #include <QListWidget>
 #include <QTableWidget>
 #include <algorithm>
+#include <tuple>
 
 #include "geometry/body/variants.h"
 #include "studio/desktop/qt_text.h"
@@ -19,7 +20,10 @@ namespace {
 struct Entry {
     QString text;
     QString hint;
-    std::function<void()> take;
+    std::function<void()> take;  ///< none: `line` is put into the line to be written on
+    QString line = {};
+    QString verb = {};     ///< of an action: told while its line is written
+    bool example = false;  ///< told then only
 };
 
 QString plain(const QAction& action) { return action.text().remove('&').remove(" …"); }
@@ -54,7 +58,11 @@ std::vector<Entry> entries(Desk& desk, const QList<QAction*>& actions) {
         }
     }
     for (const auto& kind : action_kinds()) {
-        all.push_back({qt(kind.verb + " " + kind.arguments), qt(kind.meaning), {}});
+        const QString verb = qt(kind.verb);
+        all.push_back({qt(kind.verb + " " + kind.arguments).trimmed(), qt(kind.meaning), {}, verb + " ", verb});
+        if (qt(kind.example) != verb) {
+            all.push_back({qt(kind.example), "an example, to be changed", {}, qt(kind.example), verb, true});
+        }
     }
     return all;
 }
@@ -96,32 +104,48 @@ protected:
     }
 
 private:
+    /// What fits; while the line of an action is written, first what it takes and an example.
     void fill() {
         list_->clear();
+        const QString verb = line_->text().contains(' ') ? line_->text().section(' ', 0, 0) : QString();
         const QStringList parts = line_->text().split(' ', Qt::SkipEmptyParts);
-        for (std::size_t i = 0; i < entries_.size() && list_->count() < 200; ++i) {
-            const QString whole = entries_[i].text + " " + entries_[i].hint;
-            const bool fits = std::all_of(parts.begin(), parts.end(), [&](const QString& part) {
+        const auto of_line = [&](const Entry& entry) { return !verb.isEmpty() && entry.verb == verb; };
+        const auto fits = [&](const Entry& entry) {
+            const QString whole = entry.text + " " + entry.hint;
+            return !entry.example && std::all_of(parts.begin(), parts.end(), [&](const QString& part) {
                 return whole.contains(part, Qt::CaseInsensitive);
             });
-            if (fits) {
-                auto* item = new QListWidgetItem(
-                    entries_[i].text + (entries_[i].hint.isEmpty() ? "" : "   –   " + entries_[i].hint), list_);
-                item->setData(Qt::UserRole, static_cast<int>(i));
+        };
+        for (const bool first : {true, false}) {
+            for (std::size_t i = 0; i < entries_.size() && list_->count() < 200; ++i) {
+                if (first ? of_line(entries_[i]) : !of_line(entries_[i]) && fits(entries_[i])) {
+                    add(i);
+                }
             }
         }
         list_->setCurrentRow(0);
     }
 
+    void add(std::size_t entry) {
+        const auto& [text, hint] = std::tie(entries_[entry].text, entries_[entry].hint);
+        auto* item = new QListWidgetItem(text + (hint.isEmpty() ? "" : "   –   " + hint), list_);
+        item->setData(Qt::UserRole, static_cast<int>(entry));
+    }
+
     void take() {
-        const QString typed = line_->text().trimmed();
+        const QString text = line_->text(), typed = text.trimmed();
         const QString verb = typed.section(' ', 0, 0);
         const auto& kinds = action_kinds();
-        const bool line =
-            std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return qt(kind.verb) == verb; });
+        const auto kind =
+            std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return qt(one.verb) == verb; });
         const auto* item = list_->currentItem();
-        const auto run = item != nullptr ? entries_[item->data(Qt::UserRole).toUInt()].take : std::function<void()>();
-        if (line && (typed.contains(' ') || !run)) {
+        const Entry none;
+        const Entry entry = item != nullptr ? entries_[item->data(Qt::UserRole).toUInt()] : none;
+        const bool chosen = list_->currentRow() > 0;  // another one than the line finds first
+        // A verb that takes more is written on; another Enter carries it out as it is.
+        const bool whole = typed.contains(' ') || text.endsWith(' ') ||
+                           (kind != kinds.end() && kind->arguments.empty() && !entry.take);
+        if (kind != kinds.end() && whole && !chosen) {
             try {
                 if (!desk_.act(words_of(typed.toStdString()))) {
                     return;
@@ -131,11 +155,12 @@ private:
                 return;
             }
             close();
-        } else if (run) {
+        } else if (entry.take) {
             close();
-            run();
-        } else if (item != nullptr) {
-            line_->setText(item->text().section(' ', 0, 0) + " ");
+            entry.take();
+        } else if (!entry.line.isEmpty()) {
+            line_->setText(entry.line);
+            line_->setFocus();
         }
     }
 

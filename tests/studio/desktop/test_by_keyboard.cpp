@@ -5,6 +5,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QLineEdit>
+#include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QTableView>
@@ -133,6 +134,40 @@ TEST_F(ByKeyboard, ANumberIsFoundByItsName) {
     EXPECT_TRUE(row->isVisible());
     EXPECT_EQ(window_->focusWidget(), row->number());
     EXPECT_FALSE(row->number()->visibleRegion().isEmpty()) << "rolled to where it is seen";
+}
+
+// A verb that is taken stands in the line, to be written on; what it takes and an example stay beside it.
+TEST_F(ByKeyboard, AnActionIsWrittenInThePalette) {
+    begin(computed_study());
+    key(Qt::Key_F3);
+    settle(*window_);
+    key(Qt::Key_K, Qt::ControlModifier);
+    auto* palette = window_->findChild<QDialog*>("palette");
+    ASSERT_NE(palette, nullptr);
+    QApplication::setActiveWindow(palette);
+    auto* line = palette->findChild<QLineEdit*>();
+    auto* list = palette->findChild<QListWidget*>();
+    line->setFocus();
+    type("brush");
+    int row = 0;
+    while (row < list->count() && !list->item(row)->text().startsWith("brush COLUMN")) {
+        ++row;
+    }
+    ASSERT_LT(row, list->count());
+    list->setCurrentRow(row);
+    list->setFocus();
+    Q_EMIT list->itemActivated(list->item(row));  // a double click
+    EXPECT_EQ(line->text(), "brush ");
+    EXPECT_TRUE(line->hasFocus());
+    ASSERT_GE(list->count(), 2);
+    EXPECT_TRUE(list->item(0)->text().startsWith("brush COLUMN=LOW:HIGH")) << list->item(0)->text().toStdString();
+    EXPECT_TRUE(list->item(1)->text().startsWith("brush gap=2mm:5mm")) << list->item(1)->text().toStdString();
+    type("gap=2mm:4mm");
+    ASSERT_GE(list->count(), 2) << "what it takes is still told";
+    key(Qt::Key_Return);
+    QApplication::setActiveWindow(window_.get());
+    settle(*window_);
+    EXPECT_EQ(state().explore.brush.count("gap"), 1U);
 }
 
 // Journeys 3 and 4: ranges, order of the axes, a star, and what is chosen side by side.
