@@ -64,6 +64,7 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     halves->addWidget(lines_cell_);
     lower_ = new QSplitter(Qt::Horizontal);
     table_ = new QTableView;
+    table_->setTextElideMode(Qt::ElideMiddle);
     table_rows_ = new KeptRows(table_);
     table_->setModel(table_rows_);
     table_->horizontalHeader()->setResizeContentsPrecision(60);  // rows that a width is made for: of ten thousand, some
@@ -328,9 +329,10 @@ void ExplorePanel::show_count() {
         }
         text += " shapes";
         text += refused > 0 ? QString(", %1 cannot be made").arg(refused) : QString();
-        parallel_->say(state().explore.vary.empty() ? "Add parameters that vary, and press Enter"
-                       : shapes_of_.empty()         ? "The shape cannot be made"
-                                                    : "The shapes are being made …");
+        parallel_->say(state().explore.vary.empty() ? "Add parameters of " + qt(shown_shape(state(), desk_.session())) +
+                                                          " that vary, and press Enter"
+                       : shapes_of_.empty() ? QString("The shape cannot be made")
+                                            : QString("The shapes are being made …"));
     } else {
         text += " cases";
         parallel_->say("No loads are computed yet: Study > Compute what changed (Ctrl+R)");

@@ -101,6 +101,8 @@ void ExplorePanel::fill_table() {
          [this, name](std::size_t row) { return state().stars.contains("case/" + name(row)); }});
     if (other) {
         table_->resizeColumnsToContents();
+        // Names of shapes are long and differ at their ends: their numbers are to be seen beside them.
+        table_->setColumnWidth(0, std::min(table_->columnWidth(0), std::max(120, table_->viewport()->width() * 2 / 5)));
         take_->setEnabled(false);
     }
     show_selection();
@@ -116,8 +118,11 @@ void ExplorePanel::draw_scatter() {
         return;
     }
     core::Figure figure;
-    figure.x = {x->name, unit_of(*x), 0, 0, false};
-    figure.y = {y->name, unit_of(*y), 0, 0, false};
+    const auto label = [](const core::Column& column) {
+        return axis_words(column.name).replace('.', ' ').toStdString();
+    };
+    figure.x = {label(*x), unit_of(*x), 0, 0, false};
+    figure.y = {label(*y), unit_of(*y), 0, 0, false};
     const auto to_x = core::conversion(x->unit, unit_of(*x));
     const auto to_y = core::conversion(y->unit, unit_of(*y));
     core::FigurePoints all, kept;

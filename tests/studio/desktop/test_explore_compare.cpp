@@ -82,6 +82,34 @@ TEST_F(Window, ShapesThatVaryAreMadeBrushedAndTakenIntoDesign) {
     EXPECT_TRUE(window_->desk().state().design.changes.empty());
 }
 
+// Names of shapes are long and differ at their ends: they took all the room of the table.
+TEST_F(Window, NumbersOfShapesThatVaryAreSeenBesideTheirNames) {
+    const fs::path study = copy_of_study();
+    std::string text = core::read_file(study / "study.toml");
+    const std::string name = "ellipse of the first campaign with a rounded protrusion of 2 mm";
+    text.replace(text.find("name = \"ellipse\""), 16, "name = \"" + name + "\"");
+    core::write_file(study / "study.toml", text);
+    open(study);
+    act("workspace explore");
+    act("shape '" + name + "'");
+    act("workspace explore");
+    act("vary body.base_cut=0.6:0.8:3");
+    settle(*window_);
+    auto& explore = panel<ExplorePanel>();
+    ASSERT_EQ(explore.rows().rows(), 3U);
+    auto* table = explore.findChild<QTableView*>();
+    EXPECT_LT(table->columnWidth(0), table->viewport()->width() / 2);
+    EXPECT_EQ(table->textElideMode(), Qt::ElideMiddle) << "the number behind the name stays";
+    act("axes body.base_cut centroid_z");
+    settle(*window_);
+    QStringList labels;
+    for (auto* plot : explore.findChildren<QCustomPlot*>()) {
+        labels << plot->xAxis->label() << plot->yAxis->label();
+    }
+    EXPECT_TRUE(labels.contains("body base cut")) << labels.join("; ").toStdString();
+    EXPECT_TRUE(labels.contains("centroid z (mm)")) << labels.join("; ").toStdString();
+}
+
 // Points of 1 to 20 mm stood over "2.5 5 7.5 10 12.5 1517.520".
 TEST_F(Window, AShortLogarithmicAxisHasRoundNumbers) {
     PlotView view(nullptr);
