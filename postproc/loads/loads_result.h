@@ -11,8 +11,8 @@
 
 namespace underbody::postproc {
 
-/// Closure (see LoadsResult) up to which walls are the whole of a body, and up to which they tell its inside from outside.
-/// Both are chosen, not measured.
+/// Closure (see LoadsResult) up to which walls are the whole of a body, and up to which they tell its inside from
+/// outside. Both are chosen, not measured.
 constexpr double closed_within = 1e-3, nearly_closed_within = 0.01;
 
 /// Lengths and flow that coefficients refer to. Coefficients come out only when density and speed are known.
