@@ -139,7 +139,7 @@ NeededColumns needed_columns(const std::string& motion) {
 
 /// "is 'gapp' meant? ": the column of the table that was probably meant for a needed one; empty without.
 std::string meant_for(const std::string& needed, const core::Table& table) {
-    for (const core::Column& column : table.columns) {
+    for (const core::Column& column : table.columns()) {
         const std::string plain = core::plain_name(column.name);
         if (core::meant_name(column, core::Likeness::possible) == needed || core::mistyped_quantity(plain) == needed ||
             plain == needed) {
