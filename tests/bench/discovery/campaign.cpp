@@ -36,11 +36,12 @@ void describe(const Case& wanted, const Outcome& one, const discovery::Discovery
         on += name + " ";
     }
     std::printf(
-        "   %-60s -> %s %.3f gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f, twins "
+        "   %-60s -> %s %.3f %s gate %.2g: %s; dep %s; err %.2f -> %.2f (best %.2f, twins "
         "%.2f, noise %.3g %s, fresh %.2f) pull %.1f; %.1f s\n",
-        wanted.text().c_str(), one.verdict.c_str(), one.stated, found.gate, said.c_str(), on.c_str(), one.before,
-        one.after, one.best, found.rest.twins / found.error.front().noise, found.error.front().noise,
-        found.noise.empty() ? "" : found.noise.begin()->second.from.c_str(), one.fresh, one.pull, one.seconds);
+        wanted.text().c_str(), one.verdict.c_str(), one.stated, one.right_law() ? "right" : "wrong", found.gate,
+        said.c_str(), on.c_str(), one.before, one.after, one.best, found.rest.twins / found.error.front().noise,
+        found.error.front().noise, found.noise.empty() ? "" : found.noise.begin()->second.from.c_str(), one.fresh,
+        one.pull, one.seconds);
     std::fflush(stdout);
 }
 

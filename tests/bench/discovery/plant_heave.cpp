@@ -410,7 +410,8 @@ namespace {
 
 /// `clear`: every run keeps clear of the ground, and no strength is beyond what its effect can be.
 Sample draw_heave(const Case& wanted, bool& clear) {
-    core::Random random(wanted.seed * 7919 + 17);
+    const std::uint64_t seed = wanted.seed + (wanted.draw << 32);
+    core::Random random(seed * 7919 + 17);
     std::vector<std::string> laws = wanted.names;
     if (laws == std::vector<std::string>{"unknown"}) {
         laws = {wanted.law};
@@ -447,7 +448,7 @@ Sample draw_heave(const Case& wanted, bool& clear) {
         for (int round = 0; round < 4; ++round) {
             std::vector<Track> probe;
             for (int k = 0; k < 3; ++k) {
-                core::Random own(wanted.seed * 31 + 5, static_cast<std::uint64_t>(k));
+                core::Random own(seed * 31 + 5, static_cast<std::uint64_t>(k));
                 bool any = true;  // a first guess may be far too strong
                 probe.push_back(run(plant_of({laws[i]}, {strength[i]}, {shape[i]}), {}, 50, 40, 0, own, any));
             }
@@ -492,6 +493,9 @@ Sample draw_heave(const Case& wanted, bool& clear) {
         };
     }
     for (const int style : {0, 1, 2}) {
+        if (style == 2 && !wanted.fresh) {
+            break;
+        }
         dynamics::Measurements& data = style == 0 ? sample.train : style == 1 ? sample.test : sample.fresh;
         data.kind = dynamics::MeasurementKind::time_series;
         data.title = wanted.text();
@@ -501,11 +505,11 @@ Sample draw_heave(const Case& wanted, bool& clear) {
                 data.noise["heave_velocity"] = 1e-3 * wanted.declared_noise;
             }
         }
-        for (int k = 0; k < (style == 0 ? 8 : 4); ++k) {
-            core::Random own(wanted.seed * 101 + static_cast<std::uint64_t>(style) * 17, static_cast<std::uint64_t>(k));
+        for (int k = 0; k < (style == 0 ? wanted.runs : style == 1 ? wanted.held_out : 4); ++k) {
+            core::Random own(seed * 101 + static_cast<std::uint64_t>(style) * 17, static_cast<std::uint64_t>(k));
             dynamics::MeasuredRun one;
             one.name = (style == 0 ? "run-" : style == 1 ? "test-" : "fresh-") + std::to_string(k + 1);
-            one.table = table_of(run(plant, wanted.rig, wanted.rate, 40, style, own, clear), wanted, own);
+            one.table = table_of(run(plant, wanted.rig, wanted.rate, wanted.seconds, style, own, clear), wanted, own);
             one.use = style == 0 ? dynamics::RunUse::train : dynamics::RunUse::test;
             data.runs.push_back(std::move(one));
         }

@@ -543,7 +543,7 @@ std::string Case::text() const {
         out += name + " ";
     }
     return out + law + " " + core::format_number(level, 3) + "x" + (coloured ? " coloured" : "") +
-           (velocity ? " velocity" : "") +
+           (rig.ar > 0 ? " correlated " + core::format_number(rig.ar, 2) : "") + (velocity ? " velocity" : "") +
            (declared_noise != 1 ? " noise x" + core::format_number(declared_noise, 2) : "") + " seed " +
            std::to_string(seed) + (draw > 0 ? " draw " + std::to_string(draw) : "");
 }

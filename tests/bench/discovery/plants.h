@@ -36,9 +36,12 @@ struct Case {
     Rig rig;                         ///< heave
     bool strong = false;             ///< heave: a tether of 1.5 to 6 N/m, whatever `level` says
     std::uint64_t seed = 1;
-    /// Static: sets of one seed with other numbers have other signs and shapes of their laws, order of set points and
-    /// noise; with the same number the same noise.
+    /// Sets of one seed with other numbers have other signs and shapes of their laws, controllers (heave) or order of
+    /// set points (static) and noise; static sets with the same number have the same noise.
     std::uint64_t draw = 0;
+    int runs = 8, held_out = 4;  ///< heave: that discover() fits, and those kept from every fit
+    double seconds = 40;         ///< heave: of a run
+    bool fresh = true;           ///< heave: with runs that discover() never sees
     [[nodiscard]] std::string text() const;
 };
 

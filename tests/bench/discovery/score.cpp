@@ -154,28 +154,63 @@ std::string Tally::line() const {
         seconds / static_cast<double>(std::max<std::size_t>(count(), 1)));
 }
 
-std::string calibration_lines(const std::vector<Outcome>& outcomes) {
-    std::string lines;
-    double weighted = 0, total = 0;
-    const std::vector<double> edges{0, 0.5, 0.7, 0.85, 0.95, 0.99, 1.01};
-    for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
-        double sum = 0, right = 0, n = 0;
-        for (const Outcome& one : outcomes) {
-            if (one.stated >= edges[b] && one.stated < edges[b + 1]) {
-                sum += one.stated;
-                right += one.right_law() ? 1 : 0;
-                n += 1;
+namespace {
+
+const std::vector<double> edges{0, 0.5, 0.7, 0.85, 0.95, 0.99, 1.01};
+
+struct Bin {
+    double stated = 0;  ///< summed
+    std::size_t right = 0, count = 0;
+    [[nodiscard]] double off() const { return std::abs(stated - static_cast<double>(right)); }
+};
+
+/// Of the outcomes that `among` is true of, by what was stated.
+template <typename Predicate>
+std::vector<Bin> binned(const std::vector<Outcome>& outcomes, Predicate among) {
+    std::vector<Bin> bins(edges.size() - 1);
+    for (const Outcome& one : outcomes) {
+        for (std::size_t b = 0; b < bins.size(); ++b) {
+            if (among(one) && one.stated >= edges[b] && one.stated < edges[b + 1]) {
+                bins[b].stated += one.stated;
+                bins[b].right += one.right_law() ? 1 : 0;
+                ++bins[b].count;
             }
         }
-        if (n > 0) {
-            lines += text("stated %.2f to %.2f: mean %.3f, right %s\n", edges[b], std::min(edges[b + 1], 1.0), sum / n,
-                          share(static_cast<std::size_t>(right), static_cast<std::size_t>(n)).c_str());
-            weighted += std::abs(sum - right);
-            total += n;
+    }
+    return bins;
+}
+
+std::string lines_of(const std::vector<Bin>& bins, const char* said) {
+    std::string lines;
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+        if (bins[b].count > 0) {
+            lines +=
+                text("stated %.2f to %.2f%s: mean %.3f, right %s\n", edges[b], std::min(edges[b + 1], 1.0), said,
+                     bins[b].stated / static_cast<double>(bins[b].count), share(bins[b].right, bins[b].count).c_str());
         }
     }
+    return lines;
+}
+
+}  // namespace
+
+std::string calibration_lines(const std::vector<Outcome>& outcomes) {
+    const std::vector<Bin> all = binned(outcomes, [](const Outcome&) { return true; });
+    std::string lines = lines_of(all, "");
+    const auto lacking = [](const Outcome& one) { return !one.truth.empty(); };
+    lines += lines_of(binned(outcomes, lacking), ", of sets that lack something");
+    for (const auto& [verdict, said] :
+         {std::pair{"effect", ", a name"}, {"unknown", ", unknown"}, {"none", ", nothing is missing"}}) {
+        const auto is_said = [name = verdict](const Outcome& one) { return one.verdict == name; };
+        lines += lines_of(binned(outcomes, is_said), said);
+    }
+    double off = 0, total = 0;
+    for (const Bin& bin : all) {
+        off += bin.off();
+        total += static_cast<double>(bin.count);
+    }
     return lines + text("mean difference between stated and frequency, weighted by count: %.3f\n",
-                        total > 0 ? weighted / total : 0.0);
+                        total > 0 ? off / total : 0.0);
 }
 
 std::string coverage_line(const std::vector<Outcome>& outcomes) {
