@@ -86,6 +86,19 @@ PairedFall paired_fall(const BlockSquares& before, const BlockSquares& after, do
     return with_readings(result, before, after, tail);
 }
 
+BlockErrors errors_of(const BlockSquares& squares, double in) {
+    BlockErrors errors;
+    std::size_t next = 0;
+    for (const double count : squares.count) {
+        const std::size_t end = std::min(squares.errors.size(), next + static_cast<std::size_t>(std::lround(count)));
+        std::vector<double>& block = errors.blocks.emplace_back();
+        for (; next < end; ++next) {
+            block.push_back(squares.errors[next] / in);
+        }
+    }
+    return errors;
+}
+
 std::size_t BlockErrors::count() const {
     std::size_t sum = 0;
     for (const std::vector<double>& block : blocks) {
@@ -218,6 +231,21 @@ void cap_probabilities(Attribution& attribution, double most) {
         }
         attribution.none_probability = std::max(0.0, 1 - sum);
     }
+}
+
+void hold_names_down(Attribution& attribution, double most) {
+    double largest = 0;
+    for (const Attribution::Share& share : attribution.shares) {
+        largest = std::max(largest, share.probability);
+    }
+    const double factor = largest > most ? most / largest : 1;
+    for (Attribution::Share& share : attribution.shares) {
+        attribution.unknown_probability += (1 - factor) * share.probability;
+        share.probability *= factor;
+    }
+    const double beyond = std::max(0.0, attribution.unknown_probability - most);
+    attribution.unknown_probability -= beyond;
+    attribution.none_probability += beyond;
 }
 
 void give_to_unknown(Attribution& attribution, double part) {

@@ -41,6 +41,8 @@ struct BlockErrors {
     [[nodiscard]] std::size_t count() const;
     [[nodiscard]] double rmse() const;
 };
+/// The same of blocks that kept their errors; `in`: the unit that they shall be in. Empty where none were kept.
+BlockErrors errors_of(const BlockSquares& squares, double in);
 
 /// Fall of the summed square error. With d the difference of the two models and e what the second leaves it is the sum
 /// of d^2 + 2 d e: d^2 is no chance, so that an effect which few blocks show counts in full, and the sums of 2 d e over
@@ -63,6 +65,11 @@ std::size_t best_finding(const std::vector<FittedHypothesis>& found, std::size_t
 
 /// Lowers all probabilities of names (and of `unknown`) so that none is above `most`; what they lose goes to "none".
 void cap_probabilities(Attribution& attribution, double most);
+
+/// Lowers the probabilities of names so that none is above `most`; what they lose goes to `unknown` as far as `most`,
+/// the rest to "none". Of readings that hold more than noise would, a name that nothing confirms is no sign that
+/// nothing is missing.
+void hold_names_down(Attribution& attribution, double most);
 
 /// Gives `part` of what the names have to `unknown`.
 void give_to_unknown(Attribution& attribution, double part);

@@ -104,6 +104,7 @@ private:
     [[nodiscard]] Answer best_answer();
     [[nodiscard]] double held_out_error(const Answer& answer) const;  ///< m, over the first horizon
     [[nodiscard]] bool falls(const Answer& before, const Answer& after) const;
+    [[nodiscard]] bool falls_in_few_blocks(const Answer& before, const Answer& after);
     [[nodiscard]] bool rest_is_noise(const Answer& answer);
     /// Share of what the declared model misses beyond the twins that an answer leaves.
     [[nodiscard]] double share_left(const Answer& declared, const Answer& answer) const;

@@ -241,17 +241,19 @@ void HeaveLoop::tie_delays() {
         return one.names.size() == 1 && touch_of(one, model_).delay;
     };
     std::vector<Attribution::Share>& shares = attribution_.shares;
-    if (!is_delay(shares.front())) {
+    double both = 0;
+    for (const Attribution::Share& share : shares) {
+        both += is_delay(share) ? share.probability : 0;
+    }
+    // the likeliest law is the verdict: it is no less likely for having two names
+    if (!is_delay(shares.front()) && both <= shares.front().probability) {
         return;
     }
     const auto end = std::stable_partition(shares.begin(), shares.end(), is_delay);
-    double sum = 0;
     for (auto share = shares.begin(); share != end; ++share) {
-        sum += share->probability;
+        share->probability = both / static_cast<double>(end - shares.begin());
     }
-    for (auto share = shares.begin(); share != end; ++share) {
-        share->probability = sum / static_cast<double>(end - shares.begin());
-    }
+    attribution_.chosen = shares.front().hypothesis;
 }
 
 void HeaveLoop::decide() {

@@ -75,7 +75,11 @@ TEST(Attribution, NoneIsAsSureAsTheChanceOfAsMuchStructureInNoiseLets) {
         sum += share.probability;
     }
     EXPECT_NEAR(sum, 1, 1e-9);
-    EXPECT_NEAR(attribute(list, 0.004, {}, heave_calibration()).none_probability, 0.75, 1e-9);
+    const auto in_heave = [&](double chance) { return attribute(list, chance, {}, heave_calibration()); };
+    EXPECT_EQ(in_heave(0.004).verdict, "none");
+    EXPECT_NEAR(in_heave(0.004).none_probability, 0.0667, 1e-4);  // 0.75 before
+    EXPECT_NEAR(in_heave(0.03).none_probability, 0.5, 1e-9);
+    EXPECT_NEAR(in_heave(0.3).none_probability, 0.95, 1e-9);
 }
 
 TEST(Attribution, ASecondEffectIsNotSoftenedByWhatTheFirstExplains) {

@@ -255,6 +255,49 @@ TEST(Guards, CappedProbabilitiesStillSumToOne) {
                 1e-12);
 }
 
+TEST(Guards, WhatANameLosesIsNoSignThatNothingIsMissing) {
+    Attribution a;
+    a.shares = {{0, 0.9}, {1, 0.08}};
+    a.unknown_probability = 0.01;
+    a.none_probability = 0.01;
+    hold_names_down(a, 0.5);
+    EXPECT_NEAR(a.shares[0].probability, 0.5, 1e-12);
+    EXPECT_NEAR(a.none_probability, 0.01, 1e-12);  // 0.44 before
+    EXPECT_NEAR(a.shares[0].probability + a.shares[1].probability + a.unknown_probability + a.none_probability, 1,
+                1e-12);
+    a.shares = {{0, 0.3}};
+    a.unknown_probability = 0.6;
+    a.none_probability = 0.1;
+    hold_names_down(a, 0.5);
+    EXPECT_NEAR(a.unknown_probability, 0.5, 1e-12) << "nor is that sure";
+    EXPECT_NEAR(a.none_probability, 0.2, 1e-12);
+}
+
+TEST(Guards, AFallThatOneBlockShowsIsOneInSquares) {
+    // twelve blocks of noise, in the last of which the model before is far off
+    core::Random random(5);
+    BlockSquares before, after;
+    for (int b = 0; b < 12; ++b) {
+        before.square.push_back(0);
+        after.square.push_back(0);
+        for (int k = 0; k < 100; ++k) {
+            const double left = random.normal();
+            const double missed = left + (b == 11 ? 6 : 0.0);
+            after.errors.push_back(left);
+            before.errors.push_back(missed);
+            after.square.back() += left * left;
+            before.square.back() += missed * missed;
+        }
+        before.count.push_back(100);
+        after.count.push_back(100);
+    }
+    EXPECT_FALSE(paired_fall(before, after, 0.025).falls()) << "of the differences of roots the block is the scatter";
+    EXPECT_TRUE(paired_fall(errors_of(before, 2), errors_of(after, 2), 0.025).falls());
+    EXPECT_EQ(errors_of(before, 2).blocks.size(), 12U);
+    EXPECT_NEAR(errors_of(before, 2).rmse(), 0.5 * before.rmse(), 1e-12);
+    EXPECT_FALSE(paired_fall(errors_of(after, 2), errors_of(before, 2), 0.025).falls());
+}
+
 TEST(Guards, ACorrectionIsNoLargerThanItsForceAndFadesOutside) {
     FlexibleForce force;
     force.variables = {FlexibleForce::Variable::gap};
