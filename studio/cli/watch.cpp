@@ -96,7 +96,9 @@ public:
         std::string text =
             seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
             core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged; " +
-            (nothing        ? "nothing was judged: the noise was still being learned"
+            (nothing                       ? "nothing was judged: the noise was still being learned"
+             : alarms_ == 0 && fault_told_ ? "nothing changed since the noise was learned; what was wrong from the "
+                                             "beginning is no change: discover"
              : alarms_ == 0 ? "nothing changed: the gap followed the model as it did while the noise was learned "
                               "(what was wrong from the beginning is no change: predict and discover)"
                             : alarms);
@@ -160,6 +162,10 @@ private:
             told_ = true;
             say_learned();
         }
+        if (!fault_told_ && watch_->fault()) {
+            fault_told_ = true;
+            say_fault(*watch_->fault());
+        }
         if (search_ && search_->ready()) {
             say_cause(search_->wait(shell_.progress()));
         }
@@ -201,6 +207,31 @@ private:
                               " a day"
                         : "more false alarms than the " + core::format_number(rate, 3) + " a day asked for: " +
                               core::format_number(options_.learn, 3) + " s are too short to learn the noise (60 s)"));
+    }
+
+    /// Once, and no alarm: nothing changed.
+    void say_fault(const discovery::WatchFault& fault) {
+        std::string text = seconds(last_) + ": what noise was learned from is not the model with noise: ";
+        if (fault.noisier) {
+            text += "the gap has " + core::format_number(fault.noise / fault.declared, 2) +
+                    " times the noise that is declared (" + core::told(fault.declared, "m", 3) + ")";
+        }
+        if (!fault.shows.empty()) {
+            text += std::string(fault.noisier ? ", and " : "") + fault.shows +
+                    (fault.force != 0 ? " (about " + core::told(std::abs(fault.force), "N", 2) + ")" : "") +
+                    " would explain what passes for noise (" + core::told(fault.noise, "m", 3) + "; with it " +
+                    core::told(fault.noise_with_it, "m", 3) + "): the model is wrong from the beginning";
+        } else {
+            text += ": the model is wrong from the beginning, or the sensor is noisier than declared";
+        }
+        say({{"event", "wrong_from_the_beginning"},
+             {"time", last_},
+             {"gap_noise", fault.noise},
+             {"declared_noise", fault.declared > 0 ? nlohmann::json(fault.declared) : nlohmann::json()},
+             {"noisier", fault.noisier},
+             {"shows", fault.shows},
+             {"force", fault.force}},
+            text + "\n  `underbody discover` on this log says which; the watch goes on, with it as noise");
     }
 
     void look_for_cause() {
@@ -338,7 +369,7 @@ private:
     std::unique_ptr<CauseSearch> search_;
     nlohmann::json events_ = nlohmann::json::array();
     std::size_t alarms_ = 0;
-    bool told_ = false;
+    bool told_ = false, fault_told_ = false;
 };
 
 /// Readings as they come go to the watch.

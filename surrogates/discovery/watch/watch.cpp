@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/no_limit.h"
+#include "surrogates/discovery/watch/watch_fault.h"
 #include "surrogates/discovery/watch/watch_scores.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
@@ -68,7 +69,7 @@ struct Watch::Parts {
             for (std::size_t i = 0; i < model.effects[e].sigmas.size() && out.doubted.size() < most_doubts; ++i) {
                 if (model.effects[e].sigmas[i] > 0) {
                     dynamics::Model other = model;
-                    other.effects[e].values[i] += other.effects[e].sigmas[i];
+                    other.effects[e].values[i] = moved_by_its_error(model.effects[e], i);
                     out.doubted.push_back(std::make_shared<const dynamics::HeavePlant>(other, held));
                 }
             }
@@ -313,6 +314,12 @@ struct Watch::Parts {
             recent.pop_front();
         }
         noise = learn_noise(plant, recent, begin);
+        if (!fault) {
+            const auto declared = options.noise.find("gap");
+            fault =
+                fault_from_the_begin(plant, recent, *noise,
+                                     declared != options.noise.end() ? std::optional(declared->second) : std::nullopt);
+        }
         raw_time = {};
         raw_gap = {};
         restart_filter();
@@ -383,6 +390,7 @@ struct Watch::Parts {
     std::vector<WatchPlant> doubted;
     std::map<std::vector<double>, Plants> plants;
     std::optional<WatchNoise> noise;
+    std::optional<WatchFault> fault;
     std::unique_ptr<WatchResiduals> residuals;
     std::unique_ptr<WatchScores> scores;
     double next_learn, watched = 0;
@@ -442,6 +450,7 @@ void Watch::velocity(double time, double value) {
 
 std::optional<WatchAlarm> Watch::gap(double time, double value) { return parts_->add_gap(time, value); }
 bool Watch::learned() const { return parts_->scores != nullptr; }
+const std::optional<WatchFault>& Watch::fault() const { return parts_->fault; }
 std::size_t Watch::readings() const { return parts_->count; }
 std::size_t Watch::passed_over() const { return parts_->passed_over; }
 double Watch::noise() const {

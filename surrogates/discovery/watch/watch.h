@@ -32,6 +32,18 @@ struct WatchAlarm {
     double force = 0;  ///< N, mean of a constant force where that shows best, else 0
 };
 
+/// What the readings say that noise was learned from, where the vehicle was not its model from the first one.
+struct WatchFault {
+    bool noisier = false;  ///< more noise than declared, by more than chance and more than sensors are off their sheets
+    double declared = 0;   ///< m, noise of the gap; 0: none was
+    double noise = 0;      ///< m, that was learned
+    /// What force would explain it that the model lacks ("a constant force, up" ...); empty: none is seen.
+    std::string shows;
+    double force = 0;          ///< N, of a constant one
+    double noise_with_it = 0;  ///< m, that would be left with it
+    double gain = 0;           ///< what it explains, in -2 log likelihood
+};
+
 /// Takes readings one by one; memory does not grow with their number. Times ascend; one that does not is passed over,
 /// and after twenty of them in a row the clock is taken to have begun anew.
 ///
@@ -57,6 +69,8 @@ public:
     std::optional<WatchAlarm> gap(double time, double value);
 
     [[nodiscard]] bool learned() const;
+    /// What was wrong from the beginning, as far as it shows; asked each time that noise is learned.
+    [[nodiscard]] const std::optional<WatchFault>& fault() const;
     [[nodiscard]] std::size_t readings() const;
     [[nodiscard]] std::size_t passed_over() const;  ///< readings whose time did not ascend
     /// m, standard deviation of a gap reading, averaged over a step where it is faster; 0 before it is known.

@@ -18,6 +18,18 @@ constexpr double middle_time = 30;                            ///< s, over which
 
 }  // namespace
 
+double moved_by_its_error(const dynamics::EffectUse& use, std::size_t parameter) {
+    const dynamics::EffectParameter& bounds = dynamics::effect(use.name).info().parameters[parameter];
+    const double value = use.values[parameter], sigma = use.sigmas[parameter];
+    if (value + sigma <= bounds.upper) {
+        return value + sigma;
+    }
+    if (value - sigma >= bounds.lower) {
+        return value - sigma;
+    }
+    return bounds.upper - value > value - bounds.lower ? bounds.upper : bounds.lower;
+}
+
 WatchFilter::WatchFilter(std::shared_ptr<const dynamics::HeavePlant> plant, HeaveNoise noise)
     : plant_(std::move(plant)), noise_(noise) {}
 

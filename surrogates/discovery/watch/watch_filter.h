@@ -18,6 +18,9 @@ inline constexpr std::size_t watch_directions = 5;
 
 /// Numbers of the model that are known to an error: so many are followed.
 inline constexpr std::size_t most_doubts = 6;
+/// Such a number higher by its standard deviation; lower where higher is out of its range, and where both are, at the
+/// bound that is farther away.
+double moved_by_its_error(const dynamics::EffectUse& use, std::size_t parameter);
 using WatchPlant = std::shared_ptr<const dynamics::HeavePlant>;
 
 /// Readings of one step (record_step or more), averaged.

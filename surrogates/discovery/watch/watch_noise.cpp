@@ -182,6 +182,10 @@ double correlation_time(const WatchNoise& found, double usual) {
 
 }  // namespace
 
+double noise_cost(const Plant& plant, const Steps& steps, const HeaveNoise& noise) {
+    return cost_of(run_over(plant, steps, noise));
+}
+
 WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise& begin) {
     HeaveNoise plain = begin;
     plain.slow = 0;
@@ -213,6 +217,7 @@ WatchNoise learn_noise(const Plant& plant, const Steps& steps, const HeaveNoise&
         out.noise.velocity *= std::sqrt(robust_variance(likelihood.normals[1]));
     }
     likelihood = run_over(plant, steps, out.noise);
+    out.cost = cost_of(likelihood);
     for (std::size_t s = 0; s < 2; ++s) {
         out.colours[s] = colour_of(likelihood.normals[s]);
     }

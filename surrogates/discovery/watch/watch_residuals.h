@@ -116,6 +116,7 @@ struct WatchNoise {
     HeaveNoise noise;
     std::array<WatchColour, 2> colours;
     double correlation_time = 0;  ///< s, of the gap's readings; 0: white
+    double cost = 0;              ///< -2 log likelihood, without the colours
 };
 
 /// The most likely noise of these steps under the model: white and coloured part of the gap's noise and the
@@ -123,5 +124,8 @@ struct WatchNoise {
 /// it), then what colour is left. `begin`: where the search starts (its gap and velocity noise matter).
 WatchNoise learn_noise(const std::shared_ptr<const dynamics::HeavePlant>& plant, const std::deque<WatchStep>& steps,
                        const HeaveNoise& begin);
+/// -2 log likelihood of these steps with this noise, its scale at its best.
+double noise_cost(const std::shared_ptr<const dynamics::HeavePlant>& plant, const std::deque<WatchStep>& steps,
+                  const HeaveNoise& noise);
 
 }  // namespace underbody::discovery

@@ -2,8 +2,9 @@
 // its model, with the interval of their rate, for each kind of noise. Days run side by side, each with its own seed
 // (day 1 of the first kind: 1000; SEED is added to all). bench_watch delays [SEEDS]: how long changes that make the
 // model's 2 s prediction wrong by 1, 2 and 5 noises take to be seen. bench_watch found [RIGS [SEED]]: alarms in the
-// hour after a constant force was found to its error, of a body on its spring and of a free one. bench_watch speed:
-// readings a second at 1 kHz, and memory.
+// hour after a constant force was found to its error, of a body on its spring and of a free one. bench_watch begin
+// [RIGS [SEED]]: how often a fault from the first reading is told in an hour, where there is one and where not.
+// bench_watch speed: readings a second at 1 kHz, and memory.
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
@@ -215,6 +216,50 @@ void count_after_found(std::size_t rigs, std::size_t seed) {
     }
 }
 
+/// What is said of rigs that are wrong, or not, from the first reading.
+void count_from_the_begin(std::size_t rigs, std::size_t seed) {
+    for (const auto& [name, force] : std::vector<std::pair<const char*, double>>{
+             {"nothing is missing", 0}, {"20 to 50 mN from the first reading", 0.02}}) {
+        for (const double colour : {0.0, 0.9}) {
+            for (const bool declared : {true, false}) {
+                std::vector<int> told(rigs, 0), as_force(rigs, 0), alarms(rigs, 0);
+                tbb::parallel_for(std::size_t{0}, rigs, [&, missing = force](std::size_t i) {
+                    WatchedRig rig(seed + i);
+                    rig.colour = colour;
+                    rig.force =
+                        missing *
+                        (1 + 1.5 * static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(rigs - 1, 1))) *
+                        (i % 2 == 0 ? 1 : -1);
+                    underbody::discovery::WatchOptions options;
+                    if (declared) {
+                        options.noise["gap"] = rig.noise;
+                    }
+                    Watch watch(WatchedRig::model(), options);
+                    while (rig.time < 3600 && !watch.fault()) {
+                        if (rig.show(watch)) {
+                            ++alarms[i];
+                            watch.reset();
+                        }
+                    }
+                    if (const auto& fault = watch.fault()) {
+                        told[i] = rig.time < 300 ? 1 : 2;
+                        as_force[i] = fault->shows.rfind("a constant force", 0) == 0 && fault->force * rig.force > 0;
+                    }
+                });
+                const auto count = [](const std::vector<int>& of, int least) {
+                    return std::count_if(of.begin(), of.end(), [&](int n) { return n >= least; });
+                };
+                std::printf(
+                    "%s, noise AR %.1f, %s: told in %td of %zu (%td after 5 min), %td as a constant force; "
+                    "alarms on %td\n",
+                    name, colour, declared ? "declared" : "no figure", count(told, 1), rigs, count(told, 2),
+                    count(as_force, 1), count(alarms, 1));
+                std::fflush(stdout);
+            }
+        }
+    }
+}
+
 void measure_speed() {
     WatchedRig rig(5);
     rig.step = 1e-3;
@@ -249,15 +294,17 @@ int main(int argc, char** argv) {
         measure_delays(static_cast<std::uint64_t>(given(2, 10)));
     } else if (argc > 1 && std::strcmp(argv[1], "found") == 0) {
         count_after_found(static_cast<std::size_t>(given(2, 20)), static_cast<std::size_t>(given(3, 1)));
+    } else if (argc > 1 && std::strcmp(argv[1], "begin") == 0) {
+        count_from_the_begin(static_cast<std::size_t>(given(2, 20)), static_cast<std::size_t>(given(3, 1)));
     } else if (argc > 1 && std::strcmp(argv[1], "speed") == 0) {
         measure_speed();
     } else if (argc > 1 && std::strcmp(argv[1], "false-alarms") == 0) {
         count_false_alarms(given(2, 24), given(3, 1), static_cast<int>(given(4, 0)),
                            static_cast<std::size_t>(given(5, 0)));
     } else {
-        std::fprintf(
-            stderr,
-            "bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]] | delays [SEEDS] | found [RIGS [SEED]] | speed\n");
+        std::fprintf(stderr,
+                     "bench_watch false-alarms HOURS [PER_DAY [KIND [SEED]]] | delays [SEEDS] | found [RIGS [SEED]] | "
+                     "begin [RIGS [SEED]] | speed\n");
         return 2;
     }
     return 0;

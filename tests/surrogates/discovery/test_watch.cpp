@@ -362,6 +362,65 @@ TEST(Watch, ANumberThatWasFoundIsAsSureAsItSaysAndNoFurtherChangeWithin) {
     }
 }
 
+/// A loss of more than all of a thrust would turn it round.
+TEST(Watch, ADoubtedNumberStaysInItsRange) {
+    dynamics::EffectUse use = dynamics::make_use("thrust_by_gap", {{"loss", 0.9}, {"length", 0.1}});
+    use.sigmas = {0.05, 0};
+    EXPECT_DOUBLE_EQ(moved_by_its_error(use, 0), 0.95);
+    use.sigmas = {0.3, 0};
+    EXPECT_DOUBLE_EQ(moved_by_its_error(use, 0), 0.6) << "1.2 is more than all of it";
+    use.sigmas = {10, 0};
+    EXPECT_DOUBLE_EQ(moved_by_its_error(use, 0), -2) << "neither is in its range";
+}
+
+/// What was said when noise had been learned for the first time, and what of it.
+std::optional<WatchFault> fault_of(WatchedRig rig, std::optional<double> declared, double until) {
+    WatchOptions options;
+    if (declared) {
+        options.noise["gap"] = *declared;
+    }
+    Watch watch(WatchedRig::model(), options);
+    while (rig.time < until && !watch.fault()) {
+        rig.show(watch);
+    }
+    return watch.fault();
+}
+
+TEST(Watch, AForceThatIsMissingFromTheFirstReadingIsNoNoise) {
+    for (const double colour : {0.0, 0.9}) {
+        for (const double force : {0.02, -0.05}) {
+            WatchedRig rig(21);
+            rig.colour = colour;
+            rig.force = force;
+            const auto fault = fault_of(rig, {}, 90);
+            ASSERT_TRUE(fault) << colour << " " << force;
+            EXPECT_EQ(fault->shows, force > 0 ? "a constant force, up" : "a constant force, down") << colour;
+            EXPECT_NEAR(fault->force, force, 0.1 * std::abs(force)) << colour;
+            EXPECT_FALSE(fault->noisier) << "nothing was declared";
+        }
+    }
+}
+
+TEST(Watch, ASensorThatIsNoisierThanDeclaredIsTold) {
+    WatchedRig rig(22);
+    const auto fault = fault_of(rig, rig.noise / 4, 90);
+    ASSERT_TRUE(fault);
+    EXPECT_TRUE(fault->noisier);
+    EXPECT_NEAR(fault->noise, rig.noise, 0.1 * rig.noise);
+    EXPECT_EQ(fault->shows, "");
+    EXPECT_FALSE(fault_of(rig, rig.noise / 2, 300)) << "sensors are worse than their sheets";
+}
+
+TEST(Watch, NothingIsToldOfARigThatIsItsModelFromTheBeginning) {
+    for (const double colour : {0.0, 0.9}) {
+        for (std::uint64_t seed = 31; seed < 34; ++seed) {
+            WatchedRig rig(seed);
+            rig.colour = colour;
+            EXPECT_FALSE(fault_of(rig, rig.noise, 700)) << colour << " " << seed;
+        }
+    }
+}
+
 TEST(Watch, RatesThatAreNoneAreRefused) {
     WatchOptions options;
     options.false_alarms_per_day = 0;
