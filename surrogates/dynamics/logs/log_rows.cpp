@@ -194,16 +194,55 @@ std::vector<std::size_t> set_backs(const std::vector<double>& time) {
     return places;
 }
 
-/// The readings of each clock, where all channels were set back as often; else all of them, as they are.
-std::vector<std::vector<ChannelReadings>> by_clock(std::vector<ChannelReadings> readings) {
+/// The same of a channel that is read too seldom for twenty readings to follow: in each piece of the gap's clock those
+/// that ascend and are not later than its end. Nothing where they do not all have a place.
+std::optional<std::vector<std::size_t>> seldom_set_backs(const std::vector<double>& time,
+                                                         const std::vector<double>& end_of_piece) {
+    std::vector<std::size_t> places;
+    double last = -core::no_limit;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        if (time[i] < last || (places.size() < end_of_piece.size() && time[i] > end_of_piece[places.size()])) {
+            if (places.size() == end_of_piece.size()) {
+                return {};  // set back more often than the gap
+            }
+            places.push_back(i);
+        }
+        last = time[i];
+    }
+    places.resize(end_of_piece.size(), time.size());  // not read after the last ones
+    return places;
+}
+
+/// The readings of each clock, where all channels can have been set back as often as the gap; else all of them, as they
+/// are.
+std::vector<std::vector<ChannelReadings>> by_clock(const LogChannels& channels, std::vector<ChannelReadings> readings) {
     std::vector<std::vector<std::size_t>> places;
-    for (const ChannelReadings& own : readings) {
-        places.push_back(set_backs(own.time));
-        if (places.back().size() != places.front().size() || places.front().empty()) {
-            return {std::move(readings)};
+    std::optional<std::size_t> gap;
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        places.push_back(set_backs(readings[c].time));
+        gap = channels.channels[c].quantity == "gap" ? std::optional(c) : gap;
+    }
+    if (places.empty()) {
+        return {std::move(readings)};
+    }
+    const std::vector<std::size_t> chief = places[gap.value_or(0)];
+    std::vector<double> ends;  // of the pieces but the last
+    for (const std::size_t place : chief) {
+        ends.push_back(readings[gap.value_or(0)].time[place - 1]);
+    }
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+        if (places[c].size() != chief.size()) {
+            const auto seldom = seldom_set_backs(readings[c].time, ends);
+            if (!seldom || makes_rows(channels.channels[c].quantity)) {
+                return {std::move(readings)};
+            }
+            places[c] = *seldom;
         }
     }
-    std::vector<std::vector<ChannelReadings>> pieces(places.empty() ? 1 : places.front().size() + 1);
+    if (chief.empty()) {
+        return {std::move(readings)};
+    }
+    std::vector<std::vector<ChannelReadings>> pieces(chief.size() + 1);
     for (std::size_t c = 0; c < readings.size(); ++c) {
         for (std::size_t p = 0; p < pieces.size(); ++p) {
             const std::size_t first = p == 0 ? 0 : places[c][p - 1];
@@ -213,6 +252,12 @@ std::vector<std::vector<ChannelReadings>> by_clock(std::vector<ChannelReadings> 
                                            of.begin() + static_cast<std::ptrdiff_t>(last));
             };
             pieces[p].push_back({part(readings[c].time), part(readings[c].value)});
+            if (ChannelReadings& own = pieces[p].back();
+                own.time.empty() && p > 0 && !pieces[p - 1][c].time.empty() && gap) {
+                // not read since: what was read before still holds
+                own.time.push_back(readings[*gap].time[chief[p - 1]]);
+                own.value.push_back(pieces[p - 1][c].value.back());
+            }
         }
     }
     return pieces;
@@ -246,7 +291,7 @@ core::Table rows_of(const std::string& log, const LogChannels& channels, const s
         }
     }
     std::optional<core::Table> table;
-    for (std::vector<ChannelReadings>& piece : by_clock(readings)) {
+    for (std::vector<ChannelReadings>& piece : by_clock(channels, readings)) {
         const core::Table own = merged_piece(log, channels, piece, problems);
         table = table ? joined(*table, own) : own;
     }

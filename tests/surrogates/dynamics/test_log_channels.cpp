@@ -140,6 +140,35 @@ TEST_F(LogChannels, AClockThatIsSetLosesNoReadings) {
     }
 }
 
+/// A channel that is read every four seconds has no twenty readings by which its own clock could be seen to be set.
+TEST_F(LogChannels, AClockThatIsSetBackLosesNoReadingsBesideAChannelThatIsReadSeldom) {
+    const std::vector<double> time = rig_.time;
+    for (const bool once : {false, true}) {
+        std::vector<test::LoggedSensor> sensors = rig_.sensors(true);
+        std::vector<double> when, voltage;
+        for (std::size_t i = 0; i < time.size(); i += once ? time.size() : 80) {
+            when.push_back(time[i] - (i < 300 ? 0 : 5));
+            voltage.push_back(static_cast<double>(i) / 80);
+        }
+        for (test::LoggedSensor& sensor : sensors) {
+            for (std::size_t i = 300; i < time.size(); ++i) {
+                sensor.time[i] = time[i] - 5;
+            }
+        }
+        sensors.push_back({"/voltage", "std_msgs/msg/Float64", "Volt", when, voltage});
+        write("run.mcap", test::mcap_bytes(sensors, ""));
+        const Measurements data = read(mapping("run.mcap", ros_gap, ros_push,
+                                               "channel.jet_voltage = { message = \"/voltage\", field = \"data\" }\n"));
+        ASSERT_EQ(data.runs.size(), 2U) << once;
+        EXPECT_EQ(data.runs[0].table.rows(), 300U) << once;
+        EXPECT_EQ(data.runs[1].table.rows(), 300U) << once;
+        const std::vector<double>& held = data.runs[1].table.numbers("jet_voltage");
+        EXPECT_EQ(held.back(), once ? 0 : 7) << once;
+        EXPECT_EQ(data.runs[0].table.numbers("jet_voltage").back(), once ? 0 : 3) << once;
+        EXPECT_TRUE(std::isfinite(held.front())) << once;
+    }
+}
+
 TEST_F(LogChannels, ScaleSignUnitAndOffsetGiveTheQuantity) {
     auto sensors = rig_.sensors(false);
     for (std::size_t i = 0; i < rig_.time.size(); ++i) {
