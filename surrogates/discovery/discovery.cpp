@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -112,9 +113,10 @@ Discovery discover(const dynamics::Model& model, const dynamics::Measurements& m
         result.model.lineage.made_from.push_back("declared model: " + model.file.filename().string() + ", content " +
                                                  core::content_hash_of_file(model.file));
     }
+    std::set<std::filesystem::path> hashed;  // runs may be pieces of one file
     for (const dynamics::MeasuredRun& run : data.runs) {
-        if (!std::filesystem::exists(run.file)) {
-            continue;  // made in memory
+        if (!std::filesystem::exists(run.file) || !hashed.insert(run.file).second) {
+            continue;  // made in memory, or told already
         }
         result.model.lineage.made_from.push_back("run " + run.file.filename().string() + ", content " +
                                                  core::content_hash_of_file(run.file));

@@ -322,6 +322,30 @@ void expect_friction(const dynamics::Measurements& data) {
     EXPECT_NEAR(found.effects[0].parameters[0].value, 0.006, 0.001);
 }
 
+TEST(PiecesOfAFile, AreTheFileOnceInWhatAModelIsMadeFrom) {
+    const core::TemporaryFolder folder("pieces");
+    const FastRig rig;
+    std::string text = "time [s], gap [m], input_force [N]\n";
+    for (int piece = 0; piece < 4; ++piece) {
+        const FastRig::Run run = rig.run(40 + static_cast<std::uint64_t>(piece), 1, 200);
+        for (std::size_t i = 0; i < run.time.size(); ++i) {
+            text += core::format_number(run.time[i] + 3600 * piece, 9) + ", " + core::format_number(run.gap[i], 9) +
+                    ", " + core::format_number(run.push[i]) + "\n";
+        }
+    }
+    core::write_file(folder.path() / "all.csv", text);
+    core::write_file(folder.path() / "dataset.toml", "kind = \"time_series\"\n[[run]]\nfile = \"all.csv\"\n");
+    const dynamics::Measurements data = dynamics::read_measurements(folder.path());
+    ASSERT_EQ(data.runs.size(), 4U);
+    DiscoverOptions options;
+    options.figures = options.consequence = false;
+    std::size_t told = 0;
+    for (const std::string& line : discover(FastRig::model(), data, options).model.lineage.made_from) {
+        told += line.rfind("run all.csv, content ", 0) == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(told, 1U);
+}
+
 TEST(UnevenRuns, SayWhatIsMissing) {
     expect_friction(sampled(0.006, 40, [](core::Random& random) {
         return random.uniform() < 0.01 ? random.uniform(0.5, 1.5) : random.uniform(0.01, 0.12);
