@@ -225,6 +225,13 @@ TEST(Locale, NumbersAreReadAndWrittenAlikeUnderAGermanLocale) {
     std::setlocale(LC_ALL, "C");
 }
 
+TEST(Quantities, StandOnThePageOfConventions) {
+    const std::string page = read_file(test::source_folder() / "docs" / "conventions.md");
+    for (const auto& quantity : quantity_names()) {
+        EXPECT_NE(page.find('`' + quantity.name + '`'), std::string::npos) << quantity.name;
+    }
+}
+
 TEST(Told, LengthsInMillimetresAnglesInDegreesAllElseAsItIs) {
     EXPECT_EQ(told(0.005, "m"), "5 mm");
     EXPECT_EQ(told(-std::numbers::pi / 90, "rad"), "-2 deg");
