@@ -20,6 +20,18 @@ void total_force(const SeparatedPlant& plant, double h, double w, double u, doub
     rate = (ground_slope - drag.gap) * w - drag.velocity * plant.acceleration(h, w, u);
 }
 
+/// m/s^2, under the total force that is known of the motion there.
+double acceleration_of(const SeparatedPlant& plant, const TestMotion& m, std::size_t k) {
+    dynamics::HeaveLoad load;
+    load.force = m.total_force[k] + m.input[k] + plant.bias;
+    if (plant.other_force) {
+        load.force += plant.other_force(0, m.gap[k], m.velocity[k], m.input[k]).force;
+    }
+    const auto inertia = plant.inertia ? plant.inertia(m.gap[k]) : dynamics::HeaveInertia{plant.virtual_mass, 0, 0};
+    dynamics::HeaveSlopes unused;
+    return dynamics::heave_acceleration(inertia, m.velocity[k], load, {}, unused);
+}
+
 }  // namespace
 
 std::vector<TestMotion> test_motions(const SeparatedPlant& plant, const PredictionTest& test) {
@@ -151,7 +163,7 @@ PredictionError judge_linear(const SeparatedPlant& usual, const std::string& nam
         Vector x = state_at(m, 0);
         for (std::size_t k = 0; k < m.gap.size(); ++k) {
             const Vector rate = model.derivative(state_at(m, k), {m.input[k]});
-            const double acceleration = (m.total_force[k] + m.input[k] + plant.bias) / plant.virtual_mass;
+            const double acceleration = acceleration_of(plant, m, k);
             sums.acceleration += (rate[iw] - acceleration) * (rate[iw] - acceleration);
             sums.rate += forces ? std::pow(force_of(rate) - m.total_rate[k], 2) : 0;
             judge.add(sums, m, k, x[ih], x[iw], force_of(x));
@@ -172,7 +184,7 @@ PredictionError judge_plant(const SeparatedPlant& usual, const std::vector<TestM
         double h = m.gap[0], w = m.velocity[0];
         for (std::size_t k = 0; k < m.gap.size(); ++k) {
             const double own = plant.acceleration(m.gap[k], m.velocity[k], m.input[k]);
-            const double acceleration = (m.total_force[k] + m.input[k] + plant.bias) / plant.virtual_mass;
+            const double acceleration = acceleration_of(plant, m, k);
             sums.acceleration += (own - acceleration) * (own - acceleration);
             double force = 0, rate = 0;
             total_force(plant, m.gap[k], m.velocity[k], m.input[k], force, rate);

@@ -240,6 +240,29 @@ TEST(DynamicModeDecomposition, IsExactOnALinearPlant) {
     }
 }
 
+// Its error of the acceleration was that of a mass which does not grow toward the ground, without waves.
+TEST(Predictions, ThePlantHasNoErrorWhereItsMassGrowsTowardTheGround) {
+    SeparatedPlant plant = reference_plant();
+    plant.inertia = [mass = plant.virtual_mass](double gap) {
+        const double growth = std::exp(-gap / 0.1);
+        return dynamics::HeaveInertia{mass * (1 + growth), -10 * mass * growth, 100 * mass * growth};
+    };
+    plant.other_force = [](double, double, double velocity, double) {
+        dynamics::HeaveLoad load;
+        load.force = -0.2 * velocity;
+        load.slope_w = -0.2;
+        return load;
+    };
+    PredictionTest test;
+    test.gap_lower = 0.01;
+    test.gap_upper = 0.3;
+    test.horizon = 2;
+    test.runs = 5;
+    const auto errors = compare_predictions(plant, {}, test_motions(plant, test));
+    EXPECT_LT(errors.back().acceleration, 1e-12) << errors.back().model;
+    EXPECT_LT(errors.back().gap, 1e-12);
+}
+
 TEST(DynamicModeDecomposition, PredictsBetterWithADictionary) {
     const SeparatedPlant plant = reference_plant();
     TrainingOptions o;
