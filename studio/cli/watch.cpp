@@ -89,14 +89,20 @@ public:
             }
         }
         search_.reset();
-        const double watched = watch_->judged();
+        const double watched = watch_->judged(), open = watch_->not_judged();
         const std::size_t passed_over = watch_->passed_over(), readings = watch_->readings();
         const bool nothing = watched == 0;
         const std::string alarms = std::to_string(alarms_) + (alarms_ == 1 ? " alarm" : " alarms");
         std::string text =
             seconds(last_) + ": " + (cancelled ? "ended by you" : "end of the log") + "; " +
-            core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged; " +
-            (nothing                       ? "nothing was judged: the noise was still being learned"
+            core::counted(readings, "reading") + ", " + seconds(watched) + " of them judged" +
+            (open > 0.5 * watch_->block() ? ", the last " + core::format_number(open, 3) + " s not (judged every " +
+                                                core::format_number(watch_->block(), 2) + " s)"
+                                          : "") +
+            "; " +
+            (nothing && told_
+                 ? "nothing was judged: no block of " + core::format_number(watch_->block(), 2) + " s was complete"
+             : nothing                     ? "nothing was judged: the noise was still being learned"
              : alarms_ == 0 && fault_told_ ? "nothing changed since the noise was learned; what was wrong from the "
                                              "beginning is no change: discover"
              : alarms_ == 0 ? "nothing changed: the gap followed the model as it did while the noise was learned "
@@ -119,6 +125,7 @@ public:
              {"time", last_},
              {"readings", readings},
              {"judged", watched},
+             {"not_judged", open},
              {"passed_over", passed_over},
              {"alarms", alarms_},
              {"cancelled", cancelled},
@@ -160,7 +167,14 @@ private:
         follow_clock(time);
         if (!told_ && watch_->learned()) {
             told_ = true;
+            block_ = watch_->block();
             say_learned();
+        }
+        if (told_ && watch_->block() != block_) {
+            block_ = watch_->block();
+            say({{"event", "learned_again"}, {"time", last_}, {"gap_noise", watch_->noise()}, {"block", block_}},
+                seconds(last_) + ": the noise was learned again from more readings; now judged every " +
+                    core::format_number(block_, 2) + " s");
         }
         if (!fault_told_ && watch_->fault()) {
             fault_told_ = true;
@@ -370,6 +384,7 @@ private:
     nlohmann::json events_ = nlohmann::json::array();
     std::size_t alarms_ = 0;
     bool told_ = false, fault_told_ = false;
+    double block_ = 0;  ///< s, as it was said last
 };
 
 /// Readings as they come go to the watch.

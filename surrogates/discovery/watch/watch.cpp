@@ -337,6 +337,7 @@ struct Watch::Parts {
             }
         }
         if (!alike) {
+            judged_before += scores ? scores->judged() : 0;
             scores = std::move(fresh);
         }
     }
@@ -365,12 +366,18 @@ struct Watch::Parts {
 
     // ---- judging
     std::optional<WatchAlarm> judge(const WatchStep& step) {
-        const auto passed = scores->take(step.time, residuals->take(step), true);
+        const auto seen = residuals->take(step);
+        const auto passed = scores->take(step.time, seen, true);
+        WatchAlarm alarm;
+        alarm.time = step.time;
+        if (residuals->jumped()) {  // that needs no block
+            alarm.since = step.time - 1;
+            alarm.shows = "a jump of the gap that the vehicle cannot make";
+            return alarm;
+        }
         if (!passed) {
             return {};
         }
-        WatchAlarm alarm;
-        alarm.time = step.time;
         alarm.since = step.time - passed->since;
         alarm.shows = passed->scatter ? "more scatter than before" : "";
         for (const auto& [index, size] : passed->directions) {
@@ -394,6 +401,7 @@ struct Watch::Parts {
     std::unique_ptr<WatchResiduals> residuals;
     std::unique_ptr<WatchScores> scores;
     double next_learn, watched = 0;
+    double judged_before = 0;  ///< s, by scores that others took the place of
 
     std::vector<double> input_time, input_value, raw_time, raw_gap;
     double largest_change = 0;  ///< N, of the input from one to the next, lately
@@ -458,7 +466,8 @@ double Watch::noise() const {
 }
 double Watch::correlation_time() const { return parts_->noise ? parts_->noise->correlation_time : 0; }
 double Watch::block() const { return parts_->scores ? parts_->scores->block() : 0; }
-double Watch::judged() const { return parts_->scores ? parts_->scores->judged() : 0; }
+double Watch::judged() const { return parts_->judged_before + (parts_->scores ? parts_->scores->judged() : 0); }
+double Watch::not_judged() const { return parts_->scores ? parts_->scores->open(parts_->last_time) : 0; }
 double Watch::nearest() const { return parts_->scores ? parts_->scores->nearest() : 0; }
 
 void Watch::reset() {

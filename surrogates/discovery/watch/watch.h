@@ -26,8 +26,9 @@ struct WatchOptions {
 struct WatchAlarm {
     double time = 0;   ///< s, when it was raised
     double since = 0;  ///< s, when it began, as far as can be told
-    /// What tells it: "a constant force, up", "a force that grows with the input, against it" ..., "more scatter than
-    /// before"; several with "or" between them, best first, where what was read does not tell them apart.
+    /// What tells it: "a jump of the gap that the vehicle cannot make" (within a second), "a constant force, up", "a
+    /// force that grows with the input, against it" ..., "more scatter than before"; several with "or" between them,
+    /// best first, where what was read does not tell them apart.
     std::string shows;
     double force = 0;  ///< N, mean of a constant force where that shows best, else 0
 };
@@ -79,6 +80,8 @@ public:
     [[nodiscard]] double correlation_time() const;
     [[nodiscard]] double block() const;   ///< s: readings are judged in blocks of this length
     [[nodiscard]] double judged() const;  ///< s of readings that were judged
+    /// s at the end that are not: the block that they are in is not complete.
+    [[nodiscard]] double not_judged() const;
     /// Share of its threshold of the test that is nearest to an alarm.
     [[nodiscard]] double nearest() const;
     /// What was read from `since` on, as runs of about ten seconds and more for discover(); as far back as is kept.

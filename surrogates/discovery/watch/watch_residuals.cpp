@@ -22,6 +22,8 @@ constexpr double longest_bridge = 3.5;   ///< usual steps whose input was lost t
 constexpr double silence = 1;            ///< s without a reading: the state is found anew
 constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
 constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
+constexpr double jump_lasts = 1;         ///< s of readings beyond the gate, and at least ...
+constexpr double jump_readings = 10;     ///< ... so many, that are no burst of wild ones
 constexpr double limit = 3;              ///< of what one reading may say
 constexpr double least_left = 0.02;      ///< one less the sum of a colour's coefficients
 constexpr double uneven = 1.5;           ///< of the usual step: the colour's past is not known then
@@ -101,6 +103,12 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
     const double value = (innovation.normal - expected.normal) / colour.scale;
     const bool wild =
         std::abs(value) > gate && settling_ + first_steps <= settle_steps && ++sensor.rejected <= most_wild;
+    if (index == 0) {
+        const bool settled = settling_ == 0 && unjudged_ == 0 && kick_.steps == 0;
+        beyond_ = settled && std::abs(value) > gate ? beyond_ + 1 : 0;
+        const double needed = std::max(jump_readings, usual_step_ > 0 ? std::ceil(jump_lasts / usual_step_) : 0.0);
+        jumped_ = static_cast<double>(beyond_) == needed;
+    }
     WatchInnovation used = innovation;
     used.normal = wild ? expected.normal : expected.normal + colour.scale * std::clamp(value, -gate, gate);
     if (likelihood_ != nullptr) {
@@ -180,6 +188,7 @@ WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
 }
 
 std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep& step) {
+    jumped_ = false;
     const bool lost = step.unknown_input > 0 && step.unknown_for > longest_bridge * usual_step_;
     if (!time_ || lost || step.time - *time_ > silence) {
         if (!std::isfinite(step.gap)) {

@@ -72,6 +72,10 @@ public:
     /// A silence of more than a second makes the state unknown; a while after it nothing is judged.
     std::array<std::optional<WatchResidual>, 2> take(const WatchStep& step);
 
+    /// True once, with the last of so many readings of the gap in a row beyond what noise and accidents make (a second
+    /// and ten readings) that the vehicle, or its sensor, has jumped; not while a state is still found.
+    [[nodiscard]] bool jumped() const { return jumped_; }
+
     /// What the likelihood of a noise is made of: innovations over their deviations, and the sum of log variances.
     struct Likelihood {
         std::array<std::vector<double>, 2> normals;
@@ -98,6 +102,8 @@ private:
     double usual_step_ = 0;
     std::size_t settling_ = 0, restarts_ = 0;
     std::size_t unjudged_ = 0;  ///< steps that a lost input may still show in
+    std::size_t beyond_ = 0;    ///< readings of the gap in a row beyond the gate
+    bool jumped_ = false;
     /// An input that nobody logged: its size in deviations out of the readings since (Willsky and Jones 1976).
     struct Kick {
         std::size_t steps = 0;              ///< in which it may still show

@@ -39,6 +39,8 @@ public:
     [[nodiscard]] double nearest() const;
     [[nodiscard]] double block() const { return block_; }
     [[nodiscard]] double judged() const { return judged_; }
+    /// s, of the block that is not complete at `time`.
+    [[nodiscard]] double open(double time) const { return begin_ ? time - *begin_ : 0; }
 
 private:
     std::optional<Passed> end_block(double time, bool judge);

@@ -186,6 +186,28 @@ TEST(Watch, OtherChangesAreSeen) {
     EXPECT_FALSE(watch_change([](WatchedRig&) {}).alarm);
 }
 
+// Blocks are long where the noise is correlated, and a jump of 250 noises passed unseen within one.
+TEST(Watch, AJumpNeedsNoBlock) {
+    for (const double colour : {0.0, 0.9}) {
+        const Seen seen = watch_change([](WatchedRig& rig) { rig.bias = 0.05; }, colour);
+        ASSERT_TRUE(seen.alarm) << colour;
+        EXPECT_THAT(seen.alarm->shows, HasSubstr("a jump of the gap")) << colour;
+        EXPECT_NEAR(seen.alarm->time, seen.changed, 3) << colour;
+        EXPECT_NEAR(seen.alarm->since, seen.changed, 2) << colour;
+    }
+}
+
+TEST(Watch, WhatWasJudgedIsCountedOverAll) {
+    WatchedRig rig(12);
+    Watch watch(WatchedRig::model(), {});
+    while (rig.time < 1000) {
+        rig.show(watch);
+    }
+    EXPECT_GT(watch.judged(), 880) << "of 1,000 s, 60 of them learned from";
+    EXPECT_LT(watch.judged() + watch.not_judged(), 945);
+    EXPECT_LE(watch.not_judged(), watch.block() + 0.1);
+}
+
 TEST(Watch, AColouredNoiseHidesLittle) {
     const Seen seen = watch_change([](WatchedRig& rig) { rig.force = 0.004; }, 0.9);
     ASSERT_TRUE(seen.alarm);
