@@ -39,6 +39,7 @@ RunSplit split_runs(const dynamics::Measurements& data, const std::vector<std::s
     RunSplit split;
     const std::size_t count = run_of.size();
     if (split_as_told(data, run_of, split)) {
+        split.told = true;
         return split;
     }
     const std::size_t held = count >= 3 ? std::max<std::size_t>(1, count / 4) : 0;

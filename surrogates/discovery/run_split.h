@@ -20,6 +20,7 @@ inline constexpr const char* fitted_readings =
 struct RunSplit {
     std::vector<std::size_t> train, test;          ///< of the records; of `beside` where that is there
     std::optional<dynamics::Measurements> beside;  ///< the data set in the folder held-out beside the data
+    bool told = false;                             ///< by dataset.toml or a folder: not drawn
     std::string held_out;                          ///< for people
     core::Problems problems;
 };

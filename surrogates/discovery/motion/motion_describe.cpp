@@ -147,7 +147,14 @@ void MotionLoop::describe() {
               return motion_told_apart(made_with, chosen, rival);
           }},
          result_);
-    next_motion_experiment(made_with, fitted_, attribution_, result_);
+    const std::optional<MotionQuestion> question = motion_question(made_with, fitted_, attribution_, result_);
+    const std::vector<InputAnswer> answers = question ? read_controllers(made_with) : std::vector<InputAnswer>{};
+    next_motion_experiment(
+        made_with, question,
+        [&](const MotionTrial& trial, std::size_t repeats) {
+            return promise_of(made_with, trial, answers, *question, repeats);
+        },
+        result_);
     for (const core::Problems& more : {data_.problems, dynamics::taken_as_zero(shape().name, model_, data_)}) {
         result_.problems.insert(result_.problems.end(), more.begin(), more.end());
     }

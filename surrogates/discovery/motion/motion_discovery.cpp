@@ -86,6 +86,7 @@ void MotionLoop::split() {
     }
     const RunSplit split = split_runs(data_, run_of, options_.seed);
     result_.held_out = split.held_out;
+    held_out_is_told_ = split.told;
     result_.problems.insert(result_.problems.end(), split.problems.begin(), split.problems.end());
     test_data_ = held_out_data(split, data_, run_of);
     test_data_.motion = shape().name;

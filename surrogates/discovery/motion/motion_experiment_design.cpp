@@ -15,16 +15,20 @@ namespace {
 
 constexpr double window = 2;  ///< s
 
-const dynamics::MeasuredRun& longest_run(const MotionRig& rig) {
+}  // namespace
+
+const MotionRecord& longest_record(const MotionRig& rig) {
     const auto seconds = [&](const MotionRecord& record) {
         const std::vector<double>& time = rig.data.runs[record.run].table.numbers("time");
         return time[record.last] - time[record.first];
     };
-    const auto longest =
-        std::max_element(rig.records.begin(), rig.records.end(),
-                         [&](const MotionRecord& a, const MotionRecord& b) { return seconds(a) < seconds(b); });
-    return rig.data.runs[longest->run];
+    return *std::max_element(rig.records.begin(), rig.records.end(),
+                             [&](const MotionRecord& a, const MotionRecord& b) { return seconds(a) < seconds(b); });
 }
+
+namespace {
+
+const dynamics::MeasuredRun& longest_run(const MotionRig& rig) { return rig.data.runs[longest_record(rig).run]; }
 
 /// Half of what the input spans in the runs; as it acts.
 double size_of(const MotionRig& rig, const std::string& input) {
@@ -171,40 +175,60 @@ std::string motion_told_apart(const MotionRig& rig, const FittedHypothesis& chos
            " standard deviations";
 }
 
-void next_motion_experiment(const MotionRig& rig, const std::vector<FittedHypothesis>& fitted,
-                            const Attribution& attribution, Discovery& result) {
-    constexpr double repeats = 4;
+std::optional<MotionQuestion> motion_question(const MotionRig& rig, const std::vector<FittedHypothesis>& fitted,
+                                              const Attribution& attribution, const Discovery& result) {
     if (attribution.shares.empty() || rig.inputs.empty()) {
-        result.next_experiment = "runs in other states, with inputs that move and are recorded";
-        return;
+        return {};
     }
-    const FittedHypothesis& best = fitted[attribution.shares.front().hypothesis];
-    std::vector<dynamics::EffectUse> one = best.hypothesis.with(best.fit.parameters), other;
-    std::string purpose;
+    MotionQuestion question;
+    question.one = attribution.shares.front().hypothesis;
+    const FittedHypothesis& best = fitted[question.one];
+    question.one_uses = best.hypothesis.with(best.fit.parameters);
     if (result.verdict == "effect" && attribution.shares.size() > 1) {
-        const FittedHypothesis& rival = fitted[attribution.shares[1].hypothesis];
-        other = rival.hypothesis.with(rival.fit.parameters);
-        purpose = "to tell " + best.hypothesis.label() + " from " + rival.hypothesis.label();
+        question.rival = attribution.shares[1].hypothesis;
+        const FittedHypothesis& rival = fitted[*question.rival];
+        question.rival_uses = rival.hypothesis.with(rival.fit.parameters);
+        question.purpose = "to tell " + best.hypothesis.label() + " from " + rival.hypothesis.label();
     } else if (result.verdict == "none") {
         std::vector<double> p = best.fit.parameters;
         p.front() += 3 * (std::isfinite(best.fit.sigma.front()) ? best.fit.sigma.front() : 0.0);
-        one = best.hypothesis.with(p);
-        purpose = "to see " + best.hypothesis.label() + " below today's limit";
+        question.one_uses = best.hypothesis.with(p);
+        question.purpose = "to see " + best.hypothesis.label() + " below today's limit";
     } else if (result.verdict == "unknown") {
-        purpose = "to see the law behind what depends on " + list_of(result.depends_on);
+        question.purpose = "to see the law behind what depends on " + list_of(result.depends_on);
     } else {
-        purpose = "to confirm " + best.hypothesis.label();
+        question.purpose = "to confirm " + best.hypothesis.label();
     }
-    const std::vector<MotionTrial> list = motion_trials(rig, one, other);
-    if (list.empty()) {
-        result.next_experiment = purpose + ": runs with inputs that are recorded";
+    return question;
+}
+
+void next_motion_experiment(const MotionRig& rig, const std::optional<MotionQuestion>& question,
+                            const MotionPromises& promised, Discovery& result) {
+    constexpr std::size_t repeats = 4, looked_into = 3;
+    if (!question) {
+        result.next_experiment = "runs in other states, with inputs that move and are recorded";
         return;
     }
-    const MotionTrial& trial = list.front();
-    result.next_power = chance_to_settle(trial.separation * std::sqrt(repeats));
+    const std::vector<MotionTrial> list = motion_trials(rig, question->one_uses, question->rival_uses);
+    if (list.empty()) {
+        result.next_experiment = question->purpose + ": runs with inputs that are recorded";
+        return;
+    }
+    // what differs most without a controller need not do so with one
+    std::size_t best = 0;
+    MotionPromise promise;
+    for (std::size_t i = 0; i < std::min(looked_into, list.size()); ++i) {
+        MotionPromise own = promised(list[i], repeats);
+        if (i == 0 || own.chance > promise.chance) {
+            best = i;
+            promise = std::move(own);
+        }
+    }
+    const MotionTrial& trial = list[best];
+    result.next_power = promise.chance;
     result.next_experiment =
-        experiment_text(purpose, trial.text + ", " + core::format_number(repeats, 2) + " times", result.next_power) +
-        " (next-experiment.csv: what is added; what a controller does about it within 2 s is not counted)";
+        experiment_text(question->purpose, trial.text + ", " + std::to_string(repeats) + " times", result.next_power) +
+        " (next-experiment.csv: what is added" + promise.controller + ")";
     result.next_set_points.add_numbers("time", "s", trial.time);
     result.next_set_points.add_numbers(trial.input, trial.unit, trial.added);
 }

@@ -12,7 +12,9 @@
 #include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/input_reading.h"
+#include "surrogates/discovery/motion/motion_controller.h"
 #include "surrogates/discovery/motion/motion_experiment.h"
+#include "surrogates/discovery/motion/motion_experiment_design.h"
 #include "surrogates/dynamics/simulate/motion_predict.h"
 
 namespace underbody::discovery {
@@ -129,6 +131,24 @@ private:
     void measure_axes();
     void describe();
     [[nodiscard]] Consequence consequence() const;
+
+    // motion_promise.cpp: how often a next experiment settles what it is for
+    /// Runs of the experiment by one explanation, and what they say.
+    struct Repeats {
+        std::vector<dynamics::MeasuredRun> runs;
+        double apart = 0;      ///< squared distance of the rival from the truth in one run, its numbers fitted to all
+        double explained = 0;  ///< the same of the declared model
+    };
+    [[nodiscard]] Repeats repeats_of(const MotionRig& rig, const MotionTrial& trial,
+                                     const std::vector<InputAnswer>& answers,
+                                     const std::vector<dynamics::EffectUse>& truth, const FittedHypothesis* rival,
+                                     std::size_t repeats) const;
+    [[nodiscard]] double chance_to_settle_by(const MotionRig& rig, const MotionTrial& trial,
+                                             const std::vector<InputAnswer>& answers, const FittedHypothesis& truth,
+                                             const FittedHypothesis* rival, std::size_t repeats) const;
+    [[nodiscard]] MotionPromise promise_of(const MotionRig& rig, const MotionTrial& trial,
+                                           const std::vector<InputAnswer>& answers, const MotionQuestion& question,
+                                           std::size_t repeats) const;
     [[nodiscard]] double stability() const;
 
     [[nodiscard]] const dynamics::MotionShape& shape() const { return motion_.shape(); }
@@ -142,6 +162,7 @@ private:
     Calibration calibration_;
     std::optional<MotionExperiment> experiment_;
     dynamics::Measurements test_data_;  ///< the held-out runs
+    bool held_out_is_told_ = false;     ///< by who made the data: runs that are added are none of it
     std::vector<std::size_t> channels_;
     MotionNoise null_noise_;
     double null_cost_ = 0;

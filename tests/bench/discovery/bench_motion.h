@@ -45,6 +45,7 @@ struct MotionOptions {
     std::uint64_t first = 30000;
     std::string only, write, verdicts;
     double colour = -1, seconds = 20;
+    bool experiments = false;  ///< what is promised of the next experiment is carried out
     bool understood = true;
 };
 
@@ -62,11 +63,14 @@ inline MotionOptions motion_options(int argc, char** argv) {
             options.colour = std::stod(value);
         } else if (name == "--seconds") {
             options.seconds = std::stod(value);
+        } else if (name == "--experiments") {
+            options.experiments = value == "yes";
         } else if (name == "--write") {
             options.write = value;
         } else {
             std::fprintf(stderr,
-                         "%s [--kind NAME] [--colour C] [--first-seed N] [--seeds N] [--seconds S] [--write FOLDER]\n",
+                         "%s [--kind NAME] [--colour C] [--first-seed N] [--seeds N] [--seconds S] [--write FOLDER] "
+                         "[--experiments yes]\n",
                          argv[0]);
             options.understood = false;
         }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,7 @@ struct PitchRig {
     double logged_force = 1, logged_moment = 1;   ///< of the logged inputs over those that acted
     std::function<double(std::size_t run)> zero;  ///< of the gap's sensor, m
     std::function<double(double t)> added_force, added_moment;  ///< to what the controller commands
+    std::optional<std::uint64_t> again;  ///< the same starts and set points, with the sensors' noise of this seed
 };
 
 /// What is logged of an input that acted.
@@ -97,7 +99,12 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
     data.noise["gap"] = rig.gap_noise;
     data.noise["pitch"] = rig.pitch_noise;
     for (int r = 0; r < runs; ++r) {
-        core::Random random(seed, static_cast<std::uint64_t>(r));
+        core::Random random(seed, static_cast<std::uint64_t>(r)),
+            other(rig.again.value_or(0), static_cast<std::uint64_t>(r));
+        const auto normal = [&] {
+            const double own = random.normal();
+            return rig.again ? other.normal() : own;
+        };
         double y[4] = {0.1 + 0.08 * random.uniform(), 0, 0.06 * (random.uniform() - 0.5), 0};  // gap, rise, pitch, rate
         double target = y[0], lean = 0, next = 2, gap_slow = 0, pitch_slow = 0, before = y[0], before_pitch = y[2];
         const double phase = 6 * random.uniform(), dt = 1 / rig.frequency;
@@ -110,7 +117,7 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
                 next = t + 2 + 3 * random.uniform();
             }
             const auto coloured = [&](double& slow, double sigma) {
-                slow = rig.colour * slow + std::sqrt(1 - rig.colour * rig.colour) * random.normal();
+                slow = rig.colour * slow + std::sqrt(1 - rig.colour * rig.colour) * normal();
                 return sigma * slow;
             };
             const double zero = rig.zero ? rig.zero(static_cast<std::size_t>(r)) : 0;
@@ -131,8 +138,8 @@ inline dynamics::Measurements pitch_rig_runs(const PitchRig& rig, int runs, std:
             input.push_back(u);
             turning.push_back(m);
             const double reach = body.depth * std::sin(y[2]);
-            velocity.push_back(y[1] + reach * y[3] + 1e-3 * random.normal());
-            turn_rate.push_back(y[3] + 2e-3 * random.normal());
+            velocity.push_back(y[1] + reach * y[3] + 1e-3 * normal());
+            turn_rate.push_back(y[3] + 2e-3 * normal());
             const auto rates = [&](double tt, const double* s, double* d) {
                 const PitchMoment now{tt, s[0], s[1], s[2], s[3], u};
                 const double a = body.depth * std::sin(s[2]), lift = pitch_rig_lift(s[0], s[2]);

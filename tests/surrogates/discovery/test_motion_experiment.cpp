@@ -6,6 +6,8 @@
 
 #include "pitch_rig.h"
 #include "surrogates/discovery/discovery.h"
+#include "surrogates/discovery/motion/motion_controller.h"
+#include "surrogates/discovery/motion/motion_experiment.h"
 
 namespace underbody::discovery {
 
@@ -34,7 +36,7 @@ TEST_F(MotionExperimentDesign, SettlesWhatItSaysThatItWould) {
     dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 15410);
     const Discovery before = found_in(data);
     EXPECT_NE(before.verdict, "effect") << before.sentence;
-    EXPECT_GT(before.next_power, 0.9) << before.next_experiment;
+    EXPECT_GT(before.next_power, 0.5) << before.next_experiment;
     const core::Column& added = before.next_set_points.columns().back();
     EXPECT_EQ(added.name, "input_moment") << before.next_experiment;
     rig.added_moment = [&](double t) {
@@ -49,6 +51,45 @@ TEST_F(MotionExperimentDesign, SettlesWhatItSaysThatItWould) {
     ASSERT_EQ(after.verdict, "effect") << after.sentence;
     EXPECT_EQ(after.effects.front().name, "pitch_stiffness") << after.sentence;
     EXPECT_GT(after.effects.front().probability, 0.9) << after.sentence;
+}
+
+/// The likelihoods alone would settle it for certain; a name needs a held-out error that falls as well, which so weak a
+/// damping hardly changes.
+TEST_F(MotionExperimentDesign, PromisesNoMoreThanTheVerdictAfterItWouldSay) {
+    PitchRig rig;
+    rig.seconds = 8;
+    rig.force = [](const PitchMoment& now) { return -0.032 * now.rise; };
+    const Discovery found = found_in(test::pitch_rig_runs(rig, 5, 15451));
+    EXPECT_EQ(found.verdict, "none") << found.sentence;
+    EXPECT_LT(found.next_power, 0.3) << found.next_experiment;
+    EXPECT_NE(found.next_experiment.find("with the controller that the logs show in the loop"), std::string::npos)
+        << found.next_experiment;
+}
+
+/// u = g (target - y) - 3.75 g (y - s), s a mean of readings that follows by 0.15 of the difference: the answer to
+/// readings is (-4.25 + 4.175 L) / (1 - 0.85 L) N/m, L one row back.
+TEST_F(MotionExperimentDesign, ReadsTheControllerFromTheLogs) {
+    PitchRig rig;
+    rig.seconds = 20;
+    const dynamics::Measurements data = test::pitch_rig_runs(rig, 4, 15402);
+    core::Problems problems;
+    const std::vector<MotionRecord> records =
+        motion_records(dynamics::heave_pitch_motion(), model_, data, {0, 1, 2, 3}, problems);
+    const MotionRig made_with{dynamics::heave_pitch_motion(),  model_, data, records,
+                              {"input_force", "input_moment"}, {0, 2}, {}};
+    const std::vector<InputAnswer> answers = read_controllers(made_with);
+    ASSERT_EQ(answers.size(), 2U);
+    ASSERT_EQ(answers[0].found, InputAnswer::Found::answers);
+    ASSERT_EQ(answers[1].found, InputAnswer::Found::answers);
+    // what it does over many rows to a gap that stays a metre higher, and at once
+    const auto in_the_end = [](const InputAnswer& answer, std::size_t channel) {
+        return (answer.reading[channel][0] + answer.reading[channel][1] + answer.reading[channel][2]) /
+               (1 - answer.own[0] - answer.own[1]);
+    };
+    EXPECT_NEAR(answers[0].reading[0][0], -4.25, 0.1);
+    EXPECT_NEAR(in_the_end(answers[0], 0), -0.5, 0.15);
+    EXPECT_NEAR(answers[0].reading[1][0], 0, 0.1) << "the force does not answer the pitch";
+    EXPECT_NEAR(answers[1].reading[1][0], -0.03 - 2e-4 / 0.04, 1e-3);
 }
 
 /// A moment and a centre of mass off the middle differ by the cosine of a small pitch.
