@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "studio/figures/render.h"
-#include "studio/figures/same_figure.h"
 
 namespace underbody::studio {
 
@@ -149,7 +148,7 @@ void PlotView::say_place(double x, double y) {
 
 void PlotView::show_figure(const core::Figure& figure, bool keep_zoom) {
     const bool keep = keep_zoom && zoomed_ && shown_;
-    if (shown_ && keep == zoomed_ && drawn_in_ == palette().cacheKey() && same_figure(figure, figure_)) {
+    if (shown_ && keep == zoomed_ && drawn_in_ == palette().cacheKey() && figure == figure_) {
         return;
     }
     drawn_in_ = palette().cacheKey();

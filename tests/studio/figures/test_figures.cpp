@@ -14,7 +14,6 @@
 #include "core/random.h"
 #include "studio/figures/colour_scale.h"
 #include "studio/figures/render.h"
-#include "studio/figures/same_figure.h"
 #include "tests/support/support.h"
 
 namespace underbody::studio {
@@ -444,7 +443,7 @@ TEST(SameFigure, KnowsEveryPart) {
     figure.maps.push_back({1, 1, 0, 1, 0, 1, {5}});
     figure.arrows.push_back({{1}, {1}, {1}, {1}});
     figure.bars.push_back({"d", {"x"}, {1}, {0}});
-    EXPECT_TRUE(same_figure(figure, Figure(figure)));
+    EXPECT_TRUE(figure == Figure(figure));
     const std::vector<void (*)(Figure&)> changes = {[](Figure& f) { f.title = "drag"; },
                                                     [](Figure& f) { f.x.upper = 1; },
                                                     [](Figure& f) { f.y.logarithmic = true; },
@@ -465,8 +464,10 @@ TEST(SameFigure, KnowsEveryPart) {
     for (std::size_t i = 0; i < changes.size(); ++i) {
         Figure other = figure;
         changes[i](other);
-        EXPECT_FALSE(same_figure(figure, other)) << i;
+        EXPECT_FALSE(figure == other) << i;
     }
+    figure.maps[0].values[0] = std::nan("");
+    EXPECT_FALSE(figure == Figure(figure)) << "a hole in a map: drawn again";
 }
 
 }  // namespace
