@@ -165,7 +165,8 @@ TEST_F(SolveCommands, WhatWaitsOrRunsInSlurmIsMadeByNobodyElse) {
     EXPECT_THAT(list()["ellipse-h10-p1-u0.5"]["reason"].get<std::string>(), HasSubstr("4711_2"));
     EXPECT_THAT(run({"sweep", "study", "--engine", "slurm"}).output,
                 HasSubstr("nothing is missing that does not wait or run"));
-    EXPECT_EQ(core::split(core::read_file(runs() / "calls"), '\n').size(), 2U);  // one line
+    const std::string calls = core::read_file(runs() / "calls");
+    EXPECT_EQ(core::split(calls, '\n').size(), 2U);  // one line
     const auto local = run({"sweep", "study"});
     EXPECT_EQ(local.exit_code, 0) << local.errors;
     EXPECT_THAT(local.output, HasSubstr("ellipse-h5-p1-u0.5: left alone: submitted as job 4711_1"));
