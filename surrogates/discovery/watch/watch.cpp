@@ -370,9 +370,10 @@ struct Watch::Parts {
         const auto passed = scores->take(step.time, seen, true);
         WatchAlarm alarm;
         alarm.time = step.time;
-        if (residuals->jumped()) {  // that needs no block
+        constexpr double long_block = 2;  // s: shorter ones say as soon what it is
+        if (residuals->jumped() && scores->block() > long_block) {
             alarm.since = step.time - 1;
-            alarm.shows = "a jump of the gap that the vehicle cannot make";
+            alarm.shows = "a jump of the gap, or a large force";
             return alarm;
         }
         if (!passed) {

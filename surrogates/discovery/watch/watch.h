@@ -26,7 +26,8 @@ struct WatchOptions {
 struct WatchAlarm {
     double time = 0;   ///< s, when it was raised
     double since = 0;  ///< s, when it began, as far as can be told
-    /// What tells it: "a jump of the gap that the vehicle cannot make" (within a second), "a constant force, up", "a
+    /// What tells it: "a jump of the gap, or a large force" (within a second, where blocks are
+    /// longer than two), "a constant force, up", "a
     /// force that grows with the input, against it" ..., "more scatter than before"; several with "or" between them,
     /// best first, where what was read does not tell them apart.
     std::string shows;
