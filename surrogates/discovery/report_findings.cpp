@@ -138,7 +138,7 @@ void tell_rivals(const Judgement& j, Discovery& result) {
             result.alternatives.push_back(std::move(rival));
         }
     }
-    if (result.verdict == "effect" && j.attribution.unknown_probability > 1e-3) {
+    if (result.verdict != "unknown" && !result.alternatives.empty() && j.attribution.unknown_probability > 1e-3) {
         result.alternatives.push_back(unknown_effect(j.attribution.unknown_probability, j.rest.variables));
     }
 }

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "surrogates/discovery/heave/heave_error.h"
 #include "surrogates/discovery/heave/heave_loop.h"
+#include "surrogates/discovery/one_law.h"
 #include "surrogates/discovery/report_findings.h"
 #include "surrogates/discovery/statistics.h"
 
@@ -236,24 +237,10 @@ void HeaveLoop::tie_delays() {
     if (records_.velocity_measured || attribution_.verdict != "effect") {
         return;
     }
-    const auto is_delay = [&](const Attribution::Share& share) {
+    tie_names_of_one_law(attribution_, [&](const Attribution::Share& share) {
         const Hypothesis& one = fitted_[share.hypothesis].hypothesis;
         return one.names.size() == 1 && touch_of(one, model_).delay;
-    };
-    std::vector<Attribution::Share>& shares = attribution_.shares;
-    double both = 0;
-    for (const Attribution::Share& share : shares) {
-        both += is_delay(share) ? share.probability : 0;
-    }
-    // the likeliest law is the verdict: it is no less likely for having two names
-    if (!is_delay(shares.front()) && both <= shares.front().probability) {
-        return;
-    }
-    const auto end = std::stable_partition(shares.begin(), shares.end(), is_delay);
-    for (auto share = shares.begin(); share != end; ++share) {
-        share->probability = both / static_cast<double>(end - shares.begin());
-    }
-    attribution_.chosen = shares.front().hypothesis;
+    });
 }
 
 void HeaveLoop::decide() {

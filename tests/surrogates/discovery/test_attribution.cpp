@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "surrogates/discovery/attribution.h"
+#include "surrogates/discovery/one_law.h"
+#include "surrogates/discovery/report_findings.h"
 
 using namespace underbody::discovery;
 
@@ -80,6 +82,41 @@ TEST(Attribution, NoneIsAsSureAsTheChanceOfAsMuchStructureInNoiseLets) {
     EXPECT_NEAR(in_heave(0.004).none_probability, 0.0667, 1e-4);  // 0.75 before
     EXPECT_NEAR(in_heave(0.03).none_probability, 0.5, 1e-9);
     EXPECT_NEAR(in_heave(0.3).none_probability, 0.95, 1e-9);
+}
+
+TEST(Attribution, ALawIsNoLessLikelyForHavingTwoNames) {
+    Attribution found;
+    found.chosen = 0;
+    found.shares = {{0, 0.36}, {1, 0.34}, {2, 0.3}};  // a lag, and a delay before or behind the body
+    const auto is_delay = [](const Attribution::Share& share) { return share.hypothesis > 0; };
+    tie_names_of_one_law(found, is_delay);
+    EXPECT_EQ(found.chosen, 1U);  // the lag before, which is the less likely law
+    EXPECT_NEAR(found.shares[0].probability, 0.32, 1e-12);
+    EXPECT_NEAR(found.shares[1].probability, 0.32, 1e-12);
+    EXPECT_EQ(found.shares[2].hypothesis, 0U);
+    found.chosen = 0;
+    found.shares = {{0, 0.6}, {1, 0.3}, {2, 0.1}};
+    tie_names_of_one_law(found, is_delay);
+    EXPECT_EQ(found.chosen, 0U);
+    EXPECT_NEAR(found.shares[1].probability, 0.3, 1e-12);
+}
+
+TEST(Attribution, WhatNoNameHasIsToldBesideNone) {
+    const std::vector<FittedHypothesis> fitted{explanation("linear_damping", 60)};
+    Attribution refused;
+    refused.shares = {{0, 0.5}};
+    refused.unknown_probability = 0.49;
+    refused.none_probability = 0.01;
+    const auto text = [](const auto&...) { return std::string(); };
+    const SmoothFit nothing;
+    const std::vector<underbody::dynamics::EffectUse> no_uses;
+    const Judgement judgement{fitted, refused, nothing, nothing, 0, no_uses, "", text, text};
+    Discovery result;
+    result.verdict = "none";
+    tell(judgement, result);
+    ASSERT_EQ(result.alternatives.size(), 2U);  // one before, and the probabilities summed to a half
+    EXPECT_EQ(result.alternatives.back().name, "unknown");
+    EXPECT_NEAR(result.alternatives.back().probability, 0.49, 1e-12);
 }
 
 TEST(Attribution, ASecondEffectIsNotSoftenedByWhatTheFirstExplains) {
