@@ -15,7 +15,11 @@ constexpr double loud = 6;       ///< the same of an input's change, before anyt
 constexpr int most_rounds = 30;  ///< until the same rows are left out
 constexpr double far_off = 4;    ///< robust standard deviations: a step of the set point, no answer to a reading
 
-/// Changes of one input from row to row (y), and what they may follow (a row of x each).
+/// Of the change from row to row: what is commanded besides and slowly (a wave, a set point that moves) hardly shows,
+/// while the answer to the sensors' noise does.
+double bend(const std::vector<double>& values, std::size_t k) { return values[k] - 2 * values[k - 1] + values[k - 2]; }
+
+/// Changes of the change of one input (y), and what they may follow (a row of x each).
 struct Changes {
     std::vector<std::vector<double>> x;
     std::vector<double> y;
@@ -29,18 +33,18 @@ Changes changes_of(const MotionRig& rig, const InputAnswer& answer) {
             continue;
         }
         const std::vector<double>& u = column->numbers;
-        for (std::size_t k = record.first + own_rows + reading_rows + 1; k <= record.last; ++k) {
+        for (std::size_t k = record.first + own_rows + reading_rows + 2; k <= record.last; ++k) {
             std::vector<double> x;
             for (std::size_t i = 0; i < own_rows; ++i) {
-                x.push_back(u[k - 1 - i] - u[k - 2 - i]);
+                x.push_back(bend(u, k - 1 - i));
             }
             for (const std::size_t c : rig.channels) {
                 const std::vector<double>& y = record.readings.value[c];
                 for (std::size_t i = answer.first; i < answer.first + reading_rows; ++i) {
-                    x.push_back(y.empty() ? 0 : y[k - i] - y[k - i - 1]);
+                    x.push_back(y.empty() ? 0 : bend(y, k - i));
                 }
             }
-            const double change = u[k] - u[k - 1];
+            const double change = bend(u, k);
             if (std::isfinite(change) && std::all_of(x.begin(), x.end(), [](double v) { return std::isfinite(v); })) {
                 changes.x.push_back(std::move(x));
                 changes.y.push_back(change);
@@ -137,12 +141,15 @@ struct Columns {
             }
         }
     }
-    [[nodiscard]] dynamics::MeasuredRun made() const {
+    /// Of the rows from..to - 1.
+    [[nodiscard]] dynamics::MeasuredRun made(std::size_t from, std::size_t to) const {
         dynamics::MeasuredRun out = run;
         out.table = {};
         out.table.source = run.table.source;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            out.table.add_numbers(names[i], units[i], values[i]);
+            out.table.add_numbers(names[i], units[i],
+                                  {values[i].begin() + static_cast<std::ptrdiff_t>(from),
+                                   values[i].begin() + static_cast<std::ptrdiff_t>(to)});
         }
         return out;
     }
@@ -169,6 +176,9 @@ dynamics::MeasuredRun run_again(const MotionRig& rig, const dynamics::Model& mod
                                 const MotionTrial& trial, const std::vector<InputAnswer>& answers,
                                 core::Random& random) {
     constexpr double past = 2;  // s of readings that tell where the run began
+    // s of inputs that may act on a step (delays and lags of actuators, clocks that are off): with all of a run the
+    // work would grow with its square
+    constexpr double inputs_before = 10, inputs_after = 3;
     const dynamics::MeasuredRun& logged = rig.data.runs[record.run];
     auto motion = rig.motion.run(model, logged, model.records);
     motion->set_noise(rig.noise.white);
@@ -182,7 +192,6 @@ dynamics::MeasuredRun run_again(const MotionRig& rig, const dynamics::Model& mod
         throw core::InputError("range", "the begin of run " + record.name + " was not read", {}, {});
     }
     Columns columns(logged);
-    const std::vector<std::vector<double>> before = columns.values;
     std::vector<std::vector<double>> answered(answers.size(), std::vector<double>(time.size(), 0.0));
     std::vector<std::vector<double>> apart(rig.channels.size(), std::vector<double>(time.size(), 0.0));
     for (std::size_t k = 0; k < time.size(); ++k) {
@@ -199,12 +208,21 @@ dynamics::MeasuredRun run_again(const MotionRig& rig, const dynamics::Model& mod
     }
     dynamics::MotionState y = *begin;
     dynamics::ContactState bearing = dynamics::ContactState::free;
-    motion = rig.motion.run(model, columns.made(), model.records);
+    std::size_t from = 0;  // the row that `motion` begins with
+    const auto follow_inputs = [&](std::size_t k) {
+        const auto row = [&](double t) {
+            return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), t) - time.begin());
+        };
+        from = closed ? row(time[k] - inputs_before) : 0;
+        const std::size_t to = closed ? std::max(row(time[k] + inputs_after), k + 2) : time.size();
+        motion = rig.motion.run(model, columns.made(from, std::min(to, time.size())), model.records);
+    };
+    follow_inputs(record.first);
     for (std::size_t k = record.first; k <= record.last; ++k) {
         for (std::size_t c = 0; c < rig.channels.size(); ++c) {
             const std::size_t state = rig.channels[c];
             const double reading =
-                motion->reading(k, state, y) + slow[state] + rig.noise.white[state] * random.normal();
+                motion->reading(k - from, state, y) + slow[state] + rig.noise.white[state] * random.normal();
             const std::vector<double>& was = record.readings.value[state];
             if (!was.empty() && std::isfinite(was[k])) {
                 apart[c][k] = reading - was[k];
@@ -235,19 +253,19 @@ dynamics::MeasuredRun run_again(const MotionRig& rig, const dynamics::Model& mod
             }
         }
         if (closed) {
-            motion = rig.motion.run(model, columns.made(), model.records);
+            follow_inputs(k);
         }
         const double dt = time[k + 1] - time[k], decay = std::exp(-dt / rig.noise.slow_time);
         dynamics::MotionLoads loads{};
         for (std::size_t l = 0; l < motion->shape().loads.size(); ++l) {
             loads[l] = rig.noise.load[l] / std::sqrt(dt) * random.normal();
         }
-        motion->advance(k, y, bearing, loads);
+        motion->advance(k - from, y, bearing, loads);
         for (const std::size_t c : rig.channels) {
             slow[c] = decay * slow[c] + std::sqrt(1 - decay * decay) * rig.noise.slow[c] * random.normal();
         }
     }
-    return columns.made();
+    return columns.made(0, record.last + 1);
 }
 
 }  // namespace underbody::discovery

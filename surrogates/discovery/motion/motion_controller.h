@@ -25,7 +25,7 @@ struct InputAnswer {
     std::size_t first = 0;
 };
 
-/// Least squares over the changes from row to row, so that set points and what is slow do not matter; rows far off
+/// Least squares over second differences, so that set points and what is slow do not matter; rows far off
 /// (a step of a set point) are left out and the rest fitted again. One for each input of the rig.
 std::vector<InputAnswer> read_controllers(const MotionRig& rig);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/text.h"
 #include "surrogates/discovery/guards.h"
 #include "surrogates/discovery/motion/motion_controller.h"
 #include "surrogates/discovery/motion/motion_loop.h"
@@ -18,7 +19,8 @@ constexpr std::size_t simulated = 4;       ///< runs of each explanation
 constexpr std::size_t draws = 300;         ///< of experiments out of them
 constexpr std::size_t blocks_wanted = 12;  ///< as the guards take them
 constexpr double settled_odds = 20;
-constexpr double likely = 0.05;  ///< a rival less likely than that is not simulated as the truth
+constexpr std::size_t most_rows = 1000;  ///< of a long run: its first ones, which tell no more than all of it
+constexpr double likely = 0.05;          ///< a rival less likely than that is not simulated as the truth
 
 /// Held-out windows of one run by two models: errors in noise, and what the first misses beyond the second.
 struct RunErrors {
@@ -60,6 +62,13 @@ void add(const RunErrors& run, double size, WindowSquares& before, WindowSquares
     }
 }
 
+/// What is simulated of the run of the experiment.
+MotionRecord simulated_part(const MotionRig& rig) {
+    MotionRecord part = longest_record(rig);
+    part.last = std::min(part.last, part.first + most_rows - 1);
+    return part;
+}
+
 /// Where the first number does nothing.
 double neutral_of(const Hypothesis& hypothesis) {
     return hypothesis.slots.empty() ? 0 : hypothesis.uses[hypothesis.slots[0].use].values[hypothesis.slots[0].value];
@@ -74,9 +83,10 @@ MotionLoop::Repeats MotionLoop::repeats_of(const MotionRig& rig, const MotionTri
     Repeats out;
     out.runs.resize(simulated);
     const dynamics::Model real = model_with(truth);
+    const MotionRecord part = simulated_part(rig);
     core::parallel_for(simulated, [&](std::size_t i) {
         core::Random random(options_.seed + 79, i);
-        out.runs[i] = run_again(rig, real, longest_record(rig), trial, answers, random);
+        out.runs[i] = run_again(rig, real, part, trial, answers, random);
         out.runs[i].name += "-again-" + std::to_string(i + 1);
         out.runs[i].table.source = out.runs[i].name;
     });
@@ -257,6 +267,11 @@ MotionPromise MotionLoop::promise_of(const MotionRig& rig, const MotionTrial& tr
         return std::any_of(answers.begin(), answers.end(), [&](const InputAnswer& a) { return a.found == found; });
     };
     promise.controller = "; the chance is of runs simulated with it";
+    const MotionRecord part = simulated_part(rig);
+    if (part.last < longest_record(rig).last) {
+        const std::vector<double>& time = rig.data.runs[part.run].table.numbers("time");
+        promise.controller += " over " + core::format_number(time[part.last] - time[part.first], 3) + " s, and no less";
+    }
     if (some(InputAnswer::Found::answers)) {
         promise.controller += ", with the controller that the logs show in the loop";
     }

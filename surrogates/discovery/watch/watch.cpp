@@ -372,7 +372,7 @@ struct Watch::Parts {
         alarm.time = step.time;
         constexpr double long_block = 2;  // s: shorter ones say as soon what it is
         if (residuals->jumped() && scores->block() > long_block) {
-            alarm.since = step.time - 1;
+            alarm.since = residuals->beyond_since();
             alarm.shows = "a jump of the gap, or a large force";
             return alarm;
         }

@@ -26,10 +26,9 @@ struct WatchOptions {
 struct WatchAlarm {
     double time = 0;   ///< s, when it was raised
     double since = 0;  ///< s, when it began, as far as can be told
-    /// What tells it: "a jump of the gap, or a large force" (within a second, where blocks are
-    /// longer than two), "a constant force, up", "a
-    /// force that grows with the input, against it" ..., "more scatter than before"; several with "or" between them,
-    /// best first, where what was read does not tell them apart.
+    /// What tells it: "a constant force, up", "a force that grows with the input, against it" ..., "more scatter than
+    /// before"; several with "or" between them, best first, where what was read does not tell them apart. "a jump of
+    /// the gap, or a large force" within a second, where blocks are longer than two.
     std::string shows;
     double force = 0;  ///< N, mean of a constant force where that shows best, else 0
 };

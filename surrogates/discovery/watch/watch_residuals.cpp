@@ -106,6 +106,7 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
     if (index == 0) {
         const bool settled = settling_ == 0 && unjudged_ == 0 && kick_.steps == 0;
         beyond_ = settled && std::abs(value) > gate ? beyond_ + 1 : 0;
+        beyond_since_ = beyond_ == 1 ? *time_ : beyond_since_;
         const double needed = std::max(jump_readings, usual_step_ > 0 ? std::ceil(jump_lasts / usual_step_) : 0.0);
         jumped_ = static_cast<double>(beyond_) == needed;
     }

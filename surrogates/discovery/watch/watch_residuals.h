@@ -75,6 +75,8 @@ public:
     /// True once, with the last of so many readings of the gap in a row beyond what noise and accidents make (a second
     /// and ten readings) that the vehicle, or its sensor, has jumped; not while a state is still found.
     [[nodiscard]] bool jumped() const { return jumped_; }
+    /// s, of the first of these readings.
+    [[nodiscard]] double beyond_since() const { return beyond_since_; }
 
     /// What the likelihood of a noise is made of: innovations over their deviations, and the sum of log variances.
     struct Likelihood {
@@ -103,6 +105,7 @@ private:
     std::size_t settling_ = 0, restarts_ = 0;
     std::size_t unjudged_ = 0;  ///< steps that a lost input may still show in
     std::size_t beyond_ = 0;    ///< readings of the gap in a row beyond the gate
+    double beyond_since_ = 0;
     bool jumped_ = false;
     /// An input that nobody logged: its size in deviations out of the readings since (Willsky and Jones 1976).
     struct Kick {
