@@ -8,9 +8,9 @@ namespace underbody::thesis {
 
 namespace {
 
-LinearFilter observer_at(double step) {
+LinearFilter observer_at(double dt) {
     const AugmentedModel model = p3_of_8_47();
-    return reduced_observer(model, reduced_gain(model, {{-3, 0}, {-4, 0}}), step).filter;
+    return reduced_observer(model, reduced_gain(model, {{-3, 0}, {-4, 0}}), dt).filter;
 }
 
 ControlLaw weak_law() {

@@ -144,9 +144,9 @@ void Scene::Parts::follow_hand() {
     interactor->AddObserver(vtkCommand::RenderEvent, on_ask);
     on_turn->SetClientData(this);
     on_turn->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
-        const auto& turned = static_cast<Parts*>(data)->scene->on_turn;
-        if (turned) {
-            turned();
+        const auto& listener = static_cast<Parts*>(data)->scene->on_turn;
+        if (listener) {
+            listener();
         }
     });
     on_hold->SetClientData(this);

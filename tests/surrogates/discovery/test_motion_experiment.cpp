@@ -33,7 +33,7 @@ TEST_F(MotionExperimentDesign, SettlesWhatItSaysThatItWould) {
     PitchRig rig;
     rig.seconds = 8;
     rig.moment = [](const PitchMoment& now) { return -5e-4 * std::sin(now.pitch); };
-    dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 15410);
+    dynamics::Measurements data = test::pitch_rig_runs(rig, 5, 15411);
     const Discovery before = found_in(data);
     EXPECT_NE(before.verdict, "effect") << before.sentence;
     EXPECT_GT(before.next_power, 0.9) << before.next_experiment;
@@ -43,7 +43,7 @@ TEST_F(MotionExperimentDesign, SettlesWhatItSaysThatItWould) {
         const auto row = static_cast<std::size_t>(std::lround(t * rig.frequency));
         return added.numbers[std::min(row, added.numbers.size() - 1)];
     };
-    for (dynamics::MeasuredRun& run : test::pitch_rig_runs(rig, 4, 20410).runs) {
+    for (dynamics::MeasuredRun& run : test::pitch_rig_runs(rig, 4, 20411).runs) {
         run.name += "-again";
         data.runs.push_back(run);
     }
