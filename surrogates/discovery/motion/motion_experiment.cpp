@@ -176,7 +176,7 @@ void MotionExperiment::search_about(const std::vector<LinearMotionRun>& runs, co
             const double way = last[j];
             for (const double direction : {way, -way}) {
                 MotionNoise there = noise;
-                numbers[j](there) *= std::pow(factor, direction);
+                numbers[j](there, std::pow(factor, direction));
                 const double cost = cost_of(there);
                 if (cost < best) {
                     best = cost;
@@ -193,7 +193,7 @@ void MotionExperiment::search_about(const std::vector<LinearMotionRun>& runs, co
 MotionExperiment::Numbers MotionExperiment::process_numbers() const {
     Numbers numbers;
     for (std::size_t l = 0; l < shape().loads.size(); ++l) {
-        numbers.emplace_back([l](MotionNoise& noise) -> double& { return noise.load[l]; });
+        numbers.emplace_back([l](MotionNoise& noise, double by) { noise.load[l] *= by; });
     }
     return numbers;
 }
@@ -201,7 +201,7 @@ MotionExperiment::Numbers MotionExperiment::process_numbers() const {
 MotionExperiment::Numbers MotionExperiment::white_numbers() const {
     Numbers numbers;
     for (const std::size_t i : channels()) {
-        numbers.emplace_back([i](MotionNoise& noise) -> double& { return noise.white[i]; });
+        numbers.emplace_back([i](MotionNoise& noise, double by) { noise.white[i] *= by; });
     }
     return numbers;
 }
@@ -220,10 +220,16 @@ double MotionExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses,
     Numbers numbers;
     for (const std::size_t i : channels()) {
         if (shape().is_place(i)) {
-            numbers.emplace_back([i](MotionNoise& of) -> double& { return of.slow[i]; });
+            numbers.emplace_back([i](MotionNoise& of, double by) { of.slow[i] *= by; });
         }
     }
-    numbers.emplace_back([](MotionNoise& of) -> double& { return of.slow_time; });
+    // its change from reading to reading is known far better than its size and time alone, which go along a valley
+    numbers.emplace_back([](MotionNoise& of, double by) {
+        of.slow_time *= by;
+        for (double& slow : of.slow) {
+            slow *= std::sqrt(by);
+        }
+    });
     const Numbers process = process_numbers();
     numbers.insert(numbers.end(), process.begin(), process.end());
     numbers = with_white(numbers);

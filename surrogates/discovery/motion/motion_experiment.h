@@ -96,8 +96,9 @@ private:
                    const MotionNoise& noise) const;
     [[nodiscard]] std::vector<LinearMotionRun> linear_runs(const std::vector<dynamics::EffectUse>& uses,
                                                            const MotionNoise& noise) const;
+    /// What each direction of a search changes of the noise, by a factor.
+    using Numbers = std::vector<std::function<void(MotionNoise&, double factor)>>;
     /// Pattern search over logarithms of numbers of the noise, about the path of the filter; the cost there.
-    using Numbers = std::vector<std::function<double&(MotionNoise&)>>;
     double search(const std::vector<dynamics::EffectUse>& uses, const Numbers& numbers, MotionNoise& noise) const;
     void search_about(const std::vector<LinearMotionRun>& runs, const Numbers& numbers, MotionNoise& noise,
                       double factor) const;

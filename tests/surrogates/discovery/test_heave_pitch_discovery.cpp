@@ -381,6 +381,28 @@ TEST_F(HeavePitchDiscovery, LinearAnswersAreThoseOfTheFilter) {
     EXPECT_LT(std::sqrt(error / size), 0.03);
 }
 
+/// How coloured noise changes from reading to reading is known far better than its size and its time.
+TEST_F(HeavePitchDiscovery, ColouredNoiseIsFoundWithItsSizeAndItsTime) {
+    test::PitchRig rig;
+    rig.seconds = 8;
+    rig.colour = 0.9;
+    for (const std::uint64_t seed : {15411, 15412, 15413, 15414}) {
+        const dynamics::Measurements data = test::pitch_rig_runs(rig, 7, seed);
+        core::Problems problems;
+        const MotionExperiment experiment(
+            dynamics::heave_pitch_motion(), model_, data,
+            motion_records(dynamics::heave_pitch_motion(), model_, data, {0, 1, 2, 3, 4, 5, 6}, problems));
+        MotionNoise noise;  // begun as discover() begins, with how readings scatter
+        noise.white = {9e-5, 0, 2.2e-4, 0};
+        noise.load[0] = 4e-3;
+        noise.load[1] = 1e-5;
+        experiment.fit_noise({}, noise);
+        EXPECT_NEAR(noise.total(0), rig.gap_noise, 0.2 * rig.gap_noise) << seed;
+        EXPECT_NEAR(noise.total(2), rig.pitch_noise, 0.2 * rig.pitch_noise) << seed;
+        EXPECT_NEAR(noise.slow_time, -0.04 / std::log(rig.colour), 0.13) << seed;
+    }
+}
+
 }  // namespace
 
 }  // namespace underbody::discovery
