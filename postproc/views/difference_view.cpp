@@ -273,7 +273,8 @@ ComposedView composed_difference(const Field& a, const Field& b, const std::stri
     scene.width = options.width;
     scene.height = options.height;
     scene.text_size = options.text_size;
-    const std::string seen = options.camera.empty() ? "seen from below, bow to the right" : to.camera_said();
+    const std::string seen =
+        options.camera.empty() && !options.turned ? "seen from below, bow to the right" : to.camera_said();
     composed.caption =
         caption_of(found, shift, seen, vectors,
                    level.said + (view_unit(array) == unit ? suspicion(found.all) : "") + extremes + to.mirror_said());

@@ -258,8 +258,9 @@ NamedCamera named_camera(const std::string& name, const Point& forward, const Po
 }
 
 void ViewComposer::take_camera(Scene& scene) const {
-    if (!options_.camera.empty()) {
-        const NamedCamera named = named_camera(options_.camera, options_.forward, options_.up);
+    if (options_.turned || !options_.camera.empty()) {
+        const NamedCamera named =
+            options_.turned ? *options_.turned : named_camera(options_.camera, options_.forward, options_.up);
         scene.camera.towards = named.towards;
         scene.camera.up = named.up;
     }
@@ -267,11 +268,12 @@ void ViewComposer::take_camera(Scene& scene) const {
 
 std::string ViewComposer::camera_said() const {
     const std::string& name = options_.camera;
-    return name == "bottom"  ? "seen from below, bow to the right"
-           : name == "top"   ? "seen from above, bow to the right"
-           : name == "side"  ? "seen from starboard"
-           : name == "front" ? "seen from ahead"
-                             : "seen from below the bow, starboard side";
+    return options_.turned    ? "seen as it was turned by hand"
+           : name == "bottom" ? "seen from below, bow to the right"
+           : name == "top"    ? "seen from above, bow to the right"
+           : name == "side"   ? "seen from starboard"
+           : name == "front"  ? "seen from ahead"
+                              : "seen from below the bow, starboard side";
 }
 
 void ViewComposer::finish(ComposedView& composed, const Kind& kind) const {

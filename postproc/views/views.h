@@ -76,6 +76,11 @@ void end_drawing();
 
 // ---- pictures of a case ----
 
+/// Where a camera looks and what is up in its picture, unit vectors in file axes.
+struct NamedCamera {
+    std::array<double, 3> towards, up;
+};
+
 /// How a case's pictures are made.
 struct ViewOptions {
     std::array<double, 3> forward{1, 0, 0};  ///< file axes
@@ -92,6 +97,8 @@ struct ViewOptions {
     double text_size = 1;  ///< see Scene::text_size
     /// From where surfaces of the body are seen, one of `camera_names()`; empty: as each view is defined.
     std::string camera;
+    /// From where instead of `camera`: as a hand turned it.
+    std::optional<NamedCamera> turned;
     /// Colour ranges to share between cases, SI, by the view's name ("pressure-underbody") or by what it shows
     /// (pressure, wall_shear, velocity; also "speed" and "shear"); a view's own counts over that of all. Other keys are
     /// refused.
@@ -111,11 +118,7 @@ struct View {
 /// "bottom", "top", "side" (from starboard), "front", "iso" (from below the bow, starboard).
 const std::vector<std::string>& camera_names();
 
-/// Where a camera of that name looks and what is up in its picture, unit vectors in file axes.
-/// Throws core::UsageError: no such name (with the nearest); as `vehicle_axes`.
-struct NamedCamera {
-    std::array<double, 3> towards, up;
-};
+/// Of a name. Throws core::UsageError: no such name (with the nearest); as `vehicle_axes`.
 NamedCamera named_camera(const std::string& name, const std::array<double, 3>& forward,
                          const std::array<double, 3>& up);
 

@@ -19,6 +19,7 @@ namespace underbody::studio {
 namespace {
 
 constexpr int most_lines = 5000;
+constexpr int most_shown = 2000;  ///< characters of a line: thousands of chosen cases take a text 0.1 s to lay out
 
 }  // namespace
 
@@ -47,10 +48,11 @@ CommandList::CommandList(Desk& desk, QWidget* parent) : QWidget(parent) {
         if (lines_.size() > most_lines) {
             lines_.removeFirst();
         }
-        constexpr int shown = 2000;  // thousands of chosen cases take a text 0.1 s to lay out
-        const QString rest =
-            line.size() > shown ? QString(" … (%1 more characters; Copy all has them)").arg(line.size() - shown) : "";
-        text_->appendPlainText(line.left(shown) + rest + (command.isEmpty() ? "" : "\n    # " + command.left(shown)));
+        const QString rest = line.size() > most_shown
+                                 ? QString(" … (%1 more characters; Copy all has them)").arg(line.size() - most_shown)
+                                 : "";
+        text_->appendPlainText(line.left(most_shown) + rest +
+                               (command.isEmpty() ? "" : "\n    # " + command.left(most_shown)));
         text_->moveCursor(QTextCursor::End);
         text_->moveCursor(QTextCursor::StartOfBlock);  // the beginning of a long line is what is seen
     });
@@ -136,7 +138,7 @@ void HistoryList::draw_again() {
     for (std::size_t i = 0; i < steps.size(); ++i) {
         auto* row = item(static_cast<int>(i) + 1);
         row->setText(qt(steps[i].name));
-        row->setToolTip(qt(steps[i].line));
+        row->setToolTip(qt(steps[i].line.substr(0, most_shown)));
         row->setForeground(i < desk_.history().position() ? palette().text() : palette().placeholderText());
     }
     setCurrentRow(static_cast<int>(desk_.history().position()));

@@ -66,6 +66,22 @@ const std::vector<postproc::ZoneLoads>& zones_of(const ComparedCase& one) {
     return one.loads ? one.loads->zones : none;
 }
 
+/// What a zone carries of a case, N; "": all of them together; NaN where it is not known.
+double on_zone(const ComparedCase& one, const std::string& name, double postproc::NamedLoads::*part) {
+    if (name.empty()) {
+        return one.loads ? one.loads->named.*part : std::nan("");
+    }
+    for (const auto& zone : zones_of(one)) {
+        if (zone.name == name) {
+            postproc::Wrench sum = zone.pressure;
+            sum.force = postproc::plus(sum.force, zone.viscous.force);
+            sum.moment = postproc::plus(sum.moment, zone.viscous.moment);
+            return postproc::named_loads(sum, {one.loads->forward, one.loads->up, one.loads->starboard}).*part;
+        }
+    }
+    return std::nan("");
+}
+
 QTableWidget* new_table(const QString& name) {
     auto* table = new QTableWidget;
     table->setAccessibleName(name);
@@ -135,8 +151,9 @@ void CompareNumbers::show_cases(std::vector<ComparedCase> cases, bool difference
 }
 
 double CompareNumbers::value(const ComparedCase& one, const std::string& quantity) const {
-    for (const auto& stored : desk_.session().results.case_loads) {
-        if ("case/" + stored.name == one.id && std::isfinite(stored.value(quantity))) {
+    const std::string_view name = one.id.starts_with("case/") ? std::string_view(one.id).substr(5) : std::string_view();
+    for (const auto& stored : desk_.session().results.case_loads) {  // of thousands of cases, too
+        if (stored.name == name && std::isfinite(stored.value(quantity))) {
             return stored.value(quantity);
         }
     }
@@ -216,37 +233,28 @@ void CompareNumbers::fill_zones() {
     }
     zones_->clear();
     zones_->setRowCount(static_cast<int>(cases_.size()));
-    zones_->setColumnCount(static_cast<int>(2 * (names.size() + 1)));
+    names.emplace_back();  // all of them
+    zones_->setColumnCount(static_cast<int>(4 * names.size()));
     QStringList titles, rows;
+    int column = 0;
     for (const auto& name : names) {
-        titles << qt(name) + ": lift (N)" << qt(name) + ": drag (N)";
-    }
-    titles << "all: lift (N)"
-           << "all: drag (N)";
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-        const auto& one = cases_[i];
-        rows << qt(one.name);
-        int column = 0;
-        const auto add = [&](const postproc::NamedLoads* loads) {
-            put(*zones_, static_cast<int>(i), column++, loads != nullptr ? shown(loads->lift_force) : QString("–"));
-            put(*zones_, static_cast<int>(i), column++, loads != nullptr ? shown(loads->drag_force) : QString("–"));
-        };
-        for (const auto& name : names) {
-            const postproc::ZoneLoads* found = nullptr;
-            for (const auto& zone : zones_of(one)) {
-                found = zone.name == name ? &zone : found;
+        const QString title = name.empty() ? QString("all") : qt(name);
+        titles << title + ": lift (N)"
+               << "less the first" << title + ": drag (N)"
+               << "less the first";
+        for (const auto part : {&postproc::NamedLoads::lift_force, &postproc::NamedLoads::drag_force}) {
+            const double first = cases_.empty() ? std::nan("") : on_zone(cases_.front(), name, part);
+            for (std::size_t i = 0; i < cases_.size(); ++i) {
+                const double value = on_zone(cases_[i], name, part);
+                put(*zones_, static_cast<int>(i), column, shown(value));
+                put(*zones_, static_cast<int>(i), column + 1, i > 0 ? shown(value - first, 3) : QString("–"));
             }
-            if (found == nullptr) {
-                add(nullptr);
-                continue;
-            }
-            postproc::Wrench sum = found->pressure;
-            sum.force = postproc::plus(sum.force, found->viscous.force);
-            sum.moment = postproc::plus(sum.moment, found->viscous.moment);
-            const auto loads = postproc::named_loads(sum, {one.loads->forward, one.loads->up, one.loads->starboard});
-            add(&loads);
+            zones_->setColumnHidden(column + 1, cases_.size() < 2);  // the first less the first
+            column += 2;
         }
-        add(one.loads ? &one.loads->named : nullptr);
+    }
+    for (const auto& one : cases_) {
+        rows << qt(one.name);
     }
     zones_->setHorizontalHeaderLabels(titles);
     zones_->setVerticalHeaderLabels(rows);

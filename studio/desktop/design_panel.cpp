@@ -21,6 +21,7 @@
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/side_by_side.h"
+#include "studio/figures/render.h"
 
 namespace underbody::studio {
 
@@ -354,7 +355,8 @@ void DesignPanel::draw_section() {
         return;
     }
     core::Figure figure = shown_->section;
-    section_cell_->set_title(before_ ? "Section, before as a thin line" : "Section");
+    figure.title.clear();  // it stands over it, and leaves its room to the section
+    section_cell_->set_title("Section of " + qt(name_) + (before_ ? " (before: thin)" : ""));
     if (before_) {
         for (core::FigureCurve curve : before_->section.curves) {
             if (curve.width >= 2) {  // the outline, not its dimensions
@@ -383,6 +385,10 @@ bool DesignPanel::eventFilter(QObject* watched, QEvent* event) {
     return Panel::eventFilter(watched, event);
 }
 
-void DesignPanel::export_picture(const std::filesystem::path& path) { section_->write(path); }
+void DesignPanel::export_picture(const std::filesystem::path& path) {
+    core::Figure figure = section_->figure();
+    figure.title = name_ + ": section";
+    write_picture(figure, path);
+}
 
 }  // namespace underbody::studio

@@ -98,6 +98,8 @@ std::vector<std::array<QString, 2>> DesignPanel::lift_rows() const {
 void DesignPanel::show_card() {
     const auto lift = lift_rows();
     card_->setRowCount(static_cast<int>(results().size() + lift.size()));
+    auto* model = card_->model();
+    const bool silent = model->blockSignals(true);  // each cell that changes would measure all columns
     for (int row = 0; row < card_->rowCount(); ++row) {
         const auto at = static_cast<std::size_t>(row);
         const Result* body = at < lift.size() ? nullptr : &results()[at - lift.size()];  // lift is seen first
@@ -120,6 +122,8 @@ void DesignPanel::show_card() {
             item->setFont(font);
         }
     }
+    model->blockSignals(silent);
+    Q_EMIT model->dataChanged(model->index(0, 0), model->index(card_->rowCount() - 1, 2));
     const auto* rows = card_->verticalHeader();
     card_->setMaximumHeight(card_->horizontalHeader()->sizeHint().height() + rows->length() + 2 * card_->frameWidth());
     card_->updateGeometry();

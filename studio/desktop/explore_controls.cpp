@@ -23,7 +23,6 @@ void ExplorePanel::build_head(QVBoxLayout& column) {
     y_ = new QComboBox;
     for (auto* box : {x_, y_}) {
         box->setSizeAdjustPolicy(QComboBox::AdjustToContents);
-        box->setMaximumWidth(132);  // the ranges beside it are what is typed
     }
     x_->setAccessibleName("Along the scatter plot");
     y_->setAccessibleName("Up the scatter plot");
@@ -41,10 +40,6 @@ void ExplorePanel::build_head(QVBoxLayout& column) {
     row->addWidget(brush_, 1);
     row->addWidget(count_);
     row->addWidget(clear);
-    row->addWidget(new QLabel("Scatter of"));
-    row->addWidget(y_);
-    row->addWidget(new QLabel("over"));
-    row->addWidget(x_);
     column.addLayout(row);
     vary_row_ = new QWidget;
     auto* second = new QHBoxLayout(vary_row_);

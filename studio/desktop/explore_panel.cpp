@@ -82,8 +82,18 @@ void ExplorePanel::build_views(QVBoxLayout& column) {
     table_cell_ = new ViewCell(*this, "table", "Table", table_);
     pictures_cell_ = new ViewCell(*this, "pictures", "Pictures", pictures_);
     pictures_cell_->on_show = [this] { draw_pictures(); };
+    auto* points = new QWidget;
+    auto* over_each_other = new QVBoxLayout(points);
+    over_each_other->setContentsMargins(0, 0, 0, 0);
+    auto* axes = new QHBoxLayout;
+    axes->addWidget(y_);
+    axes->addWidget(new QLabel("over"));
+    axes->addWidget(x_);
+    axes->addStretch(1);
+    over_each_other->addLayout(axes);
+    over_each_other->addWidget(scatter_, 1);
     points_or_pictures_ =
-        new SideBySide(new ViewCell(*this, "points", "Points", scatter_), "Points", pictures_cell_, "Pictures", room);
+        new SideBySide(new ViewCell(*this, "points", "Points", points), "Points", pictures_cell_, "Pictures", room);
     lower_->addWidget(table_cell_);
     lower_->addWidget(points_or_pictures_);
     lower_->setSizes({500, 500});

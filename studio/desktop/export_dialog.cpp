@@ -351,7 +351,7 @@ void ExportDialog::show_written(const QString& path, const Ended& ended, const Q
     if (ended.done) {
         proof_->setText("Wrote " + path);
         Q_EMIT exported(path, *ended.done);
-        Q_EMIT written(line);
+        Q_EMIT written(path, line);
     } else if (ended.error) {
         proof_->setText("Not written: " + said_of(ended.error));
         Q_EMIT failed("writing " + path, ended.error);
@@ -371,12 +371,14 @@ void ExportDialog::choose_and_write() {
     for (const auto& one : tables::export_formats()) {
         ending = one.name == format() ? qt(one.ending) : ending;
     }
-    QString path = QFileDialog::getSaveFileName(this, "Write", name_->text() + ending, "*" + ending, nullptr,
-                                                QFileDialog::DontConfirmOverwrite);
+    QString path =
+        QFileDialog::getSaveFileName(this, "Write", (folder_.isEmpty() ? "" : folder_ + "/") + name_->text() + ending,
+                                     "*" + ending, nullptr, QFileDialog::DontConfirmOverwrite);
     if (path.isEmpty()) {
         return;
     }
     path += path.endsWith(ending) ? QString() : ending;
+    folder_ = QFileInfo(path).absolutePath();
     if (QFileInfo::exists(path) &&
         QMessageBox::question(this, "Replace", QFileInfo(path).fileName() + " is there already. Replace it?") !=
             QMessageBox::Yes) {

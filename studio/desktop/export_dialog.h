@@ -48,11 +48,13 @@ public:
     [[nodiscard]] const PlotView* error() const { return error_; }
     /// Tables of the study that *Write all marked* writes as this one is.
     void set_marked(const QStringList& tables);
+    /// Where *Write* begins to ask; from then on where it wrote.
+    void set_folder(const QString& folder) { folder_ = folder; }
     /// What is chosen. Throws core::Error.
     [[nodiscard]] ExportRecord record() const;
 
 Q_SIGNALS:
-    void written(const QString& command);
+    void written(const QString& path, const QString& command);
     /// What was written, and how; its table and digest are not known here.
     void exported(const QString& path, const ExportRecord& record);
     void failed(const QString& what, std::exception_ptr error);
@@ -100,6 +102,7 @@ private:
     QProgressBar* proving_ = nullptr;
     QLabel* command_ = nullptr;
     QTimer* soon_ = nullptr;
+    QString folder_;
     int writing_ = 0;  ///< files that are being written
     bool closed_ = false;
 };

@@ -101,8 +101,8 @@ void FieldsPanel::add_switches(QBoxLayout& left) {
     mirror_ = new QCheckBox("&mirror half model");
     difference_ = new QCheckBox("&difference to the first");
     difference_->setToolTip(
-        "The cells after the first show their case less the first, seen from below, as `underbody views difference` "
-        "draws it");
+        "The cells after the first show their case less the first, from where the first is seen, as `underbody views "
+        "difference` draws it");
     for (auto* box : {whole_range_, edges_, mirror_, difference_}) {
         left.addWidget(box);
     }

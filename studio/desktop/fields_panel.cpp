@@ -290,11 +290,9 @@ void FieldsPanel::recolour() {
     show_pictures();
 }
 
-namespace {
-std::string seen_from(const FieldView& view) {
+std::string FieldsPanel::seen_from(const FieldView& view) {
     return view.turned ? view.camera + " " + text_of(*view.turned) : view.camera;
 }
-}  // namespace
 
 void FieldsPanel::keep_turn(const Scene::Pose& pose) {
     FieldView turned = state().fields;
@@ -303,6 +301,7 @@ void FieldsPanel::keep_turn(const Scene::Pose& pose) {
     by_hand_ = true;
     desk_.act({"turn", "compare", text_of(pose)});
     by_hand_ = false;
+    show_pictures();  // differences are seen from there, too
 }
 
 void FieldsPanel::look() {

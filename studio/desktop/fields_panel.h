@@ -138,6 +138,7 @@ private:
     /// As the state says, where it is not so already.
     void look();
     void keep_turn(const Scene::Pose& pose);
+    [[nodiscard]] static std::string seen_from(const FieldView& view);
     void not_read(std::size_t cell, const QString& why);
     void ask_units();
     void show_pictures();

@@ -2,6 +2,7 @@
 #include <QComboBox>
 #include <QLabel>
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -157,12 +158,14 @@ void FieldsPanel::show_pictures() {
     for (const double end : state().fields.range.value_or(std::array<double, 2>{0, 0})) {
         key += core::format_number(end) + " ";
     }
-    key += array + " " + state().fields.camera + (state().fields.mirror.value_or(true) ? "" : " half");
+    key += array + (state().fields.mirror.value_or(true) ? "" : " half") + "\nseen ";
+    const bool turned_alone = pictures_of_.starts_with(key);  // the picture of before stays until the new one is there
+    key += seen_from(state().fields);
     if (key == pictures_of_) {
         return;
     }
     pictures_of_ = key;
-    for (const std::size_t i : wanted) {
+    for (const std::size_t i : turned_alone ? std::vector<std::size_t>() : wanted) {
         cells_[i]->picture->show_text(array.empty() ? "Choose what the difference is of: Colour by" : "…");
     }
     if (views) {
@@ -215,12 +218,30 @@ std::pair<std::vector<QImage>, std::vector<QString>> apart(const std::vector<Dra
     return both;
 }
 
+/// From where, and what is up; how near is left to the picture, which holds all of the body.
+postproc::NamedCamera camera_of(const ViewPose& pose) {
+    postproc::NamedCamera camera{};
+    double length = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        camera.towards[i] = pose[3 + i] - pose[i];
+        camera.up[i] = pose[6 + i];
+        length += camera.towards[i] * camera.towards[i];
+    }
+    for (double& part : camera.towards) {
+        part /= length > 0 ? std::sqrt(length) : 1;
+    }
+    return camera;
+}
+
 }  // namespace
 
 /// All in one job, so that they have one range of colours.
 void FieldsPanel::draw_differences(const std::vector<std::size_t>& cells, const std::string& array) {
     postproc::ViewOptions options = view_options(*cells_.front());
     options.camera = state().fields.camera;
+    if (const auto& hand = state().fields.turned) {
+        options.turned = camera_of(*hand);
+    }
     if (const auto& range = state().fields.range) {
         options.ranges = {{"difference", {(*range)[0], (*range)[1]}}};
     }

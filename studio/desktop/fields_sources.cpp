@@ -21,6 +21,16 @@ namespace {
 
 constexpr std::size_t most_cells = 6;
 
+/// The case of the study that "case/ellipse-h5-p0" is; nullptr: none. There may be thousands.
+const cases::Case* case_of(const cases::Study& study, std::string_view id) {
+    if (!id.starts_with("case/")) {
+        return nullptr;
+    }
+    const auto at = std::find_if(study.cases.begin(), study.cases.end(),
+                                 [name = id.substr(5)](const cases::Case& one) { return one.name == name; });
+    return at == study.cases.end() ? nullptr : &*at;
+}
+
 }  // namespace
 
 std::string FieldsPanel::Source::key() const {
@@ -58,13 +68,10 @@ FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) co
 QString FieldsPanel::title_by_difference(std::vector<Source>& sources) const {
     std::vector<const cases::Case*> known;
     for (const auto& source : sources) {
-        const auto& all = session().study.cases;
-        const auto at =
-            std::find_if(all.begin(), all.end(), [&](const auto& one) { return "case/" + one.name == source.id; });
-        if (at == all.end()) {
+        known.push_back(case_of(session().study, source.id));
+        if (known.back() == nullptr) {
             return {};  // a file from outside has no conditions
         }
-        known.push_back(&*at);
     }
     if (known.size() < 2) {
         return {};
@@ -102,10 +109,8 @@ std::vector<FieldsPanel::Source> FieldsPanel::wanted() const {
         if (id.starts_with("field/")) {
             sources.push_back(source_of(std::filesystem::path(id.substr(6))));
         }
-        for (const auto& one : session().study.cases) {
-            if ("case/" + one.name == id) {
-                sources.push_back(source_of(one));
-            }
+        if (const auto* one = case_of(session().study, id)) {
+            sources.push_back(source_of(*one));
         }
     };
     for (const auto& id : state().selection) {
@@ -182,10 +187,8 @@ FieldLoads sum_of(const postproc::Field& field, postproc::LoadsOptions options, 
 }  // namespace
 
 postproc::LoadsOptions FieldsPanel::loads_options(const Source& source) const {
-    for (const auto& one : session().study.cases) {
-        if ("case/" + one.name == source.id) {
-            return cases::loads_options(session().study, one);
-        }
+    if (const auto* one = case_of(session().study, source.id)) {
+        return cases::loads_options(session().study, *one);
     }
     cases::Case outside;
     outside.file = source.file;

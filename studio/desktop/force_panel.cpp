@@ -48,7 +48,9 @@ ForcePanel::ForcePanel(Desk& desk, QWidget* parent) : Panel(desk, parent) {
 ForcePanel::~ForcePanel() = default;
 
 void ForcePanel::build() {
-    auto* all = new QHBoxLayout(this);
+    auto* column = new QVBoxLayout(this);
+    auto* all = new QHBoxLayout;
+    column->addLayout(all, 1);
     auto* left = new QVBoxLayout;
     auto* controls = new QWidget;
     controls->setFixedWidth(390);  // the slider of the net weight is long enough to choose with
@@ -70,12 +72,10 @@ void ForcePanel::build() {
     left->addWidget(reach_);
     left->addStretch(1);
 
-    auto* right = new QVBoxLayout;
-    all->addLayout(right, 1);
     auto* cells = new QWidget;
     grid_ = new QGridLayout(cells);
     grid_->setContentsMargins(0, 0, 0, 0);
-    right->addWidget(cells, 1);
+    all->addWidget(cells, 1);
     plot_ = new PlotView(this);
     grid_->addWidget(plot_, 0, 0);
     connect(plot_, &PlotView::hovered, this, &Panel::remark);
@@ -89,7 +89,7 @@ void ForcePanel::build() {
     list_->setMaximumHeight(130);
     list_->verticalHeader()->setDefaultSectionSize(22);
     list_->setSelectionBehavior(QAbstractItemView::SelectRows);
-    right->addWidget(list_);
+    column->addWidget(list_);  // under both: its columns have their room
     at_rest_ = new QTimer(this);
     at_rest_->setSingleShot(true);
     at_rest_->setInterval(200);
@@ -180,7 +180,7 @@ void ForcePanel::choose_table(bool fresh) {
         table_.reset();
         spec_ = {};
         hide_beside();
-        list_->setRowCount(0);
+        list_->hide();
         about_->clear();
         reach_->clear();
         plot_->show_text(why);

@@ -55,7 +55,6 @@ LiveBody body_of(const geometry::BodyShape& shape, const geometry::Placement& pl
         body.base_area += patch.name == "base" ? patch.area : 0;
     }
     body.section = geometry::section_figure(body.mesh, shape.name);
-    body.underside = geometry::underbody_figure(body.mesh, shape.name);
     body.drawn = Scene::prepare(field_of(body.mesh), {});
     return body;
 }

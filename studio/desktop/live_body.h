@@ -28,7 +28,7 @@ struct LiveBody {
     geometry::MassProperties mass;
     geometry::Clearance clearance;
     double base_area = 0;  ///< m^2
-    core::Figure section, underside;
+    core::Figure section;
     std::shared_ptr<const Scene::Prepared> drawn;
     /// Only of a whole one.
     std::optional<geometry::Certificate> certificate;

@@ -2,6 +2,7 @@
 #include <QApplication>
 #include <QClipboard>
 #include <QDateTime>
+#include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <algorithm>
@@ -42,28 +43,35 @@ bool MainWindow::write_chosen(QString path, const QStringList& endings,
     bool written = false;
     guarded("writing " + file.fileName(), [&] {
         write(path.toStdString());
+        written_into_[desk_->session().folder] = file.absolutePath();
         problems_->note("Wrote " + path);
         written = true;
     });
     return written;
 }
 
-namespace {
-/// The dialog does not ask: `write_chosen` does, when the ending is known.
-QString ask_path(QWidget* parent, const QString& title, const QString& name, const QString& filter) {
-    return QFileDialog::getSaveFileName(parent, title, name, filter, nullptr, QFileDialog::DontConfirmOverwrite);
+QString MainWindow::write_folder() const {
+    const auto known = written_into_.find(desk_->session().folder);
+    return known != written_into_.end() ? known->second
+           : desk_->has_study()         ? qt(desk_->session().folder.string())
+                                        : QDir::currentPath();
 }
-}  // namespace
+
+/// The dialog does not ask: `write_chosen` does, when the ending is known.
+QString MainWindow::ask_path(const QString& title, const QString& name, const QString& filter) {
+    return QFileDialog::getSaveFileName(this, title, write_folder() + "/" + name, filter, nullptr,
+                                        QFileDialog::DontConfirmOverwrite);
+}
 
 QString MainWindow::proposed_file(const QString& ending) const {
     return qt(proposed_name(desk_->state(), desk_->session())) + ending;
 }
 
 void MainWindow::save_session(bool elsewhere) {
-    const QString path = elsewhere || session_file_.isEmpty()
-                             ? ask_path(this, "Save session", QFileInfo(qt(desk_->state().study)).fileName() + ".ubs",
-                                        "Sessions (*.ubs)")
-                             : session_file_;
+    const QString path =
+        elsewhere || session_file_.isEmpty()
+            ? ask_path("Save session", QFileInfo(qt(desk_->state().study)).fileName() + ".ubs", "Sessions (*.ubs)")
+            : session_file_;
     const auto write = [&](const fs::path& file) {
         desk_->save_session_file(file);
         session_file_ = qt(file.string());
@@ -81,7 +89,7 @@ void MainWindow::save_shape() {
         if (shown.empty()) {
             throw core::InputError("missing", "there is no shape to save");
         }
-        write_chosen(ask_path(this, "Save shape", qt(shown) + ".toml", "Shapes (*.toml)"), {".toml"},
+        write_chosen(ask_path("Save shape", qt(shown) + ".toml", "Shapes (*.toml)"), {".toml"},
                      [&](const fs::path& path) { write_shown_shape(path); });
     });
 }
@@ -106,7 +114,7 @@ void MainWindow::export_picture() {
         for (const auto& ending : endings) {
             filter += "*" + ending + " ";
         }
-        write_chosen(ask_path(this, "Export picture", proposed_file(endings.front()), filter.trimmed() + ")"), endings,
+        write_chosen(ask_path("Export picture", proposed_file(endings.front()), filter.trimmed() + ")"), endings,
                      [&](const fs::path& path) { current()->export_picture(path); });
     });
 }
@@ -116,7 +124,7 @@ void MainWindow::export_table() {
         if (!current()->has_table()) {
             throw core::InputError("missing", "this workspace shows no table yet");
         }
-        write_chosen(ask_path(this, "Export table", proposed_file(".csv"), "Tables (*.csv)"), {".csv"},
+        write_chosen(ask_path("Export table", proposed_file(".csv"), "Tables (*.csv)"), {".csv"},
                      [&](const fs::path& path) { current()->export_table(path); });
     });
 }
@@ -144,7 +152,7 @@ void MainWindow::export_controller() {
     });
 }
 
-void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of) {
+ExportDialog* MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of) {
     auto* dialog = new ExportDialog(
         *jobs_, table, this, of,
         of.found.empty()
@@ -161,12 +169,15 @@ void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& ta
     };
     mark();
     connect(desk_, &Desk::changed, dialog, mark);
-    connect(dialog, &ExportDialog::written, this,
-            [this](const QString& command) { problems_->note("Wrote it. The same: " + command); });
+    dialog->set_folder(write_folder());
+    connect(dialog, &ExportDialog::written, this, [this](const QString& path, const QString& command) {
+        problems_->note("Wrote " + path + ". The same: " + command);
+    });
     const std::string made_of =
         table_digest(desk_->session(), of.name);  // of what is written, whatever changes meanwhile
     connect(dialog, &ExportDialog::exported, this,
             [this, made_of, study = desk_->session().folder](const QString& path, ExportRecord record) {
+                written_into_[study] = QFileInfo(path).absolutePath();
                 if (!record.table.empty()) {
                     record.made_of = made_of;
                     keep_exports({{path.toStdString(), record}}, study);
@@ -175,12 +186,14 @@ void MainWindow::show_export(const std::shared_ptr<const tables::ForceTable>& ta
     connect(dialog, &ExportDialog::failed, this, &MainWindow::show_failure);
     connect(dialog, &ExportDialog::all_wanted, this, [this](const ExportRecord& how) {
         const QString folder =
-            QFileDialog::getExistingDirectory(this, "Folder that all marked tables are written into");
+            QFileDialog::getExistingDirectory(this, "Folder that all marked tables are written into", write_folder());
         if (!folder.isEmpty()) {
+            written_into_[desk_->session().folder] = folder;
             write_marked(how, folder.toStdString());
         }
     });
     dialog->show();
+    return dialog;
 }
 
 bool MainWindow::write_marked(const ExportRecord& how, const fs::path& folder) {

@@ -27,6 +27,7 @@ namespace underbody::studio {
 struct ExportRecord;
 struct TableOfStudy;
 class Banner;
+class ExportDialog;
 class FirstPage;
 class MeasurementSheet;
 class Panel;
@@ -70,6 +71,11 @@ public:
     /// written.
     bool write_chosen(QString path, const QStringList& endings,
                       const std::function<void(const std::filesystem::path&)>& write);
+
+    /// Where files are written: into the folder of the study, until another one was chosen.
+    [[nodiscard]] QString write_folder() const;
+    /// A force table for a controller, in a dialog of its own that deletes itself.
+    ExportDialog* show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of);
 
     /// Adds the shape that Design shows to the study's sweep under a name; asks first, with the cost. False when it was
     /// not added. Throws core::Error.
@@ -128,7 +134,6 @@ private:
     void export_picture();
     void export_table();
     void export_controller();
-    void show_export(const std::shared_ptr<const tables::ForceTable>& table, const TableOfStudy& of);
     struct EndedExports;
     bool write_exports(const std::vector<std::pair<std::string, ExportRecord>>& files);
     void show_exports(const EndedExports& ended, std::size_t of, const std::filesystem::path& study);
@@ -139,6 +144,7 @@ private:
     void save_session(bool elsewhere);
     void save_shape();
     [[nodiscard]] QString proposed_file(const QString& ending) const;
+    [[nodiscard]] QString ask_path(const QString& title, const QString& name, const QString& filter);
     void copy_picture();
     void guarded(const QString& what, const std::function<void()>& work);
     void remember_study(const QString& folder);
@@ -151,6 +157,7 @@ private:
     bool laid_out_ = false;
     QString last_error_;
     QString session_file_;
+    std::map<std::filesystem::path, QString> written_into_;  ///< by study: where a file was written last
     Jobs* jobs_ = nullptr;
     Desk* desk_ = nullptr;
     QStackedWidget* middle_ = nullptr;

@@ -4,9 +4,9 @@
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
-#include <QPainterPath>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/text.h"
 #include "studio/desktop/qt_text.h"
@@ -58,7 +58,7 @@ void ParallelView::show_axes(std::vector<Axis> axes) {
         axis.logarithmic = tables::spans_decades(axis.lower, axis.upper);
     }
     give_titles_room();
-    pale_ = {};
+    pale_ = bright_ = {};
     update();
 }
 
@@ -98,52 +98,85 @@ double ParallelView::value_at(const Axis& axis, double y) const {
                             : axis.lower + inside * (axis.upper - axis.lower);
 }
 
-void ParallelView::draw_line(QPainter& painter, std::size_t row) const {
-    QPainterPath path;
-    bool open = false;
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const double value = row < axes_[i].values.size() ? axes_[i].values[row] : NAN;
-        if (!std::isfinite(value)) {
-            open = false;
-            continue;
+/// Of the rows, from axis to axis: as lines and no paths, which a software painter joins at every corner.
+QVector<QLineF> ParallelView::lines_of(const std::vector<std::size_t>& rows) const {
+    QVector<QLineF> lines;
+    lines.reserve(static_cast<int>(rows.size() * axes_.size()));
+    for (const std::size_t row : rows) {
+        QPointF before;
+        bool open = false;
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            const double value = row < axes_[i].values.size() ? axes_[i].values[row] : NAN;
+            const bool there = std::isfinite(value);
+            const QPointF at = there ? QPointF(x_of(i), y_of(axes_[i], value)) : QPointF();
+            if (there && open) {
+                lines.append({before, at});
+            }
+            open = there;
+            before = at;
         }
-        const QPointF at(x_of(i), y_of(axes_[i], value));
-        open ? path.lineTo(at) : path.moveTo(at);
-        open = true;
     }
-    painter.drawPath(path);
+    return lines;
 }
 
-/// All lines and the kept ones, each drawn once: a range that is dragged moves over them.
+namespace {
+
+/// Of lines between the same pixels one.
+QVector<QLineF> each_once(const QVector<QLineF>& lines, int height) {
+    std::map<int, std::vector<bool>> drawn;  // by the axis where they begin: from which pixel to which
+    QVector<QLineF> rest;
+    for (const QLineF& line : lines) {
+        auto& seen = drawn[qRound(line.x1())];
+        seen.resize(static_cast<std::size_t>(height) * static_cast<std::size_t>(height));
+        const int from = std::clamp(qRound(line.y1()), 0, height - 1),
+                  to = std::clamp(qRound(line.y2()), 0, height - 1);
+        const auto at =
+            static_cast<std::size_t>(from) * static_cast<std::size_t>(height) + static_cast<std::size_t>(to);
+        if (!seen[at]) {
+            seen[at] = true;
+            rest.append(line);
+        }
+    }
+    return rest;
+}
+
+}  // namespace
+
+/// All lines, where not all are kept, and the kept ones, each drawn once: a range that is dragged moves over them.
 void ParallelView::draw_layers() {
     const auto begin = [this](QPixmap& layer) {
         layer = QPixmap(size() * devicePixelRatioF());
         layer.setDevicePixelRatio(devicePixelRatioF());
         layer.fill(Qt::transparent);
     };
-    if (pale_.size() != size() * devicePixelRatioF()) {
+    const std::size_t rows = axes_.front().values.size();
+    constexpr std::size_t few = 2000;  // of more no single one is seen
+    const auto add = [&](QPainter& painter, const std::vector<std::size_t>& of, QColor colour, double width) {
+        if (of.size() < few) {
+            painter.setPen(QPen(colour, width));
+            painter.drawLines(lines_of(of));
+            return;
+        }
+        colour.setAlpha(254);  // Qt takes ten times as long for thin lines that nothing shines through
+        painter.setPen(QPen(colour, 1));
+        painter.drawLines(each_once(lines_of(of), std::max(1, height())));
+    };
+    if (kept_.size() < rows && pale_.size() != size() * devicePixelRatioF()) {
         begin(pale_);
         QPainter painter(&pale_);
         QColor colour = palette().text().color();
         colour.setAlpha(40);
         painter.setPen(colour);
-        for (std::size_t row = 0; row < axes_.front().values.size(); ++row) {
-            draw_line(painter, row);
-        }
-        bright_ = {};
+        std::vector<std::size_t> all(rows);
+        std::iota(all.begin(), all.end(), std::size_t(0));
+        painter.drawLines(rows < few ? lines_of(all) : each_once(lines_of(all), std::max(1, height())));
     }
-    if (bright_.isNull()) {
+    if (bright_.size() != size() * devicePixelRatioF()) {
         begin(bright_);
         QPainter painter(&bright_);
-        painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
-        painter.setPen(QPen(palette().highlight().color(), 1.4));
-        for (const std::size_t row : kept_) {
-            draw_line(painter, row);
-        }
-        painter.setPen(QPen(palette().text().color(), 2.4));
-        for (const std::size_t row : marked_) {
-            draw_line(painter, row);
-        }
+        painter.setRenderHint(QPainter::Antialiasing, kept_.size() < few);
+        add(painter, kept_, palette().highlight().color(), 1.4);
+        add(painter, marked_, palette().text().color(), 2.4);
     }
 }
 
@@ -156,14 +189,17 @@ void ParallelView::paintEvent(QPaintEvent*) {
         return;
     }
     draw_layers();
-    painter.drawPixmap(0, 0, pale_);
+    if (kept_.size() < axes_.front().values.size()) {
+        painter.drawPixmap(0, 0, pale_);
+    }
     painter.drawPixmap(0, 0, bright_);
     painter.setRenderHint(QPainter::Antialiasing, kept_.size() < 2000);
     if (pointed_out_) {
+        const QVector<QLineF> line = lines_of({*pointed_out_});
         painter.setPen(QPen(palette().base().color(), 6));  // seen between many others
-        draw_line(painter, *pointed_out_);
+        painter.drawLines(line);
         painter.setPen(QPen(palette().text().color(), 3));
-        draw_line(painter, *pointed_out_);
+        painter.drawLines(line);
     }
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         if (carried_ == static_cast<int>(i)) {
@@ -217,7 +253,7 @@ void ParallelView::draw_axis(QPainter& painter, std::size_t index, double x) con
 }
 
 void ParallelView::resizeEvent(QResizeEvent*) {
-    pale_ = {};
+    pale_ = bright_ = {};
     give_titles_room();
 }
 
@@ -238,7 +274,7 @@ void ParallelView::give_titles_room() {
 
 void ParallelView::changeEvent(QEvent* event) {
     if (event->type() == QEvent::PaletteChange) {
-        pale_ = {};
+        pale_ = bright_ = {};
         update();
     }
     QWidget::changeEvent(event);

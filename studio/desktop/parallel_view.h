@@ -3,7 +3,9 @@
 // Shift the lower one, Delete takes it away.
 #pragma once
 
+#include <QLineF>
 #include <QPixmap>
+#include <QVector>
 #include <QWidget>
 #include <array>
 #include <map>
@@ -68,7 +70,7 @@ private:
     /// The place among the axes that is nearest to x.
     [[nodiscard]] std::size_t place_at(double x) const;
     [[nodiscard]] std::array<double, 2> range_of(std::size_t axis) const;
-    void draw_line(QPainter& painter, std::size_t row) const;
+    [[nodiscard]] QVector<QLineF> lines_of(const std::vector<std::size_t>& rows) const;
     void draw_layers();
     [[nodiscard]] static QString title_of(const Axis& axis);
     [[nodiscard]] double title_room() const;
@@ -78,7 +80,7 @@ private:
     std::map<std::string, std::array<double, 2>> brush_;
     std::vector<std::size_t> kept_, marked_;
     std::optional<std::size_t> pointed_out_;
-    QPixmap pale_;    ///< all lines, drawn once
+    QPixmap pale_;    ///< all lines, drawn once they are not all kept
     QPixmap bright_;  ///< the kept ones
     QString empty_;
     int head_ = 60;  ///< px above the axes: titles and largest values

@@ -9,7 +9,6 @@
 #include "core/figure.h"
 
 class QCPItemTracer;
-class QCustomPlot;
 
 namespace underbody::studio {
 
@@ -23,6 +22,8 @@ public:
     void show_text(const QString& text);
     [[nodiscard]] bool has_figure() const { return shown_; }
     [[nodiscard]] const core::Figure& figure() const { return figure_; }
+    /// False while it is still to be drawn.
+    [[nodiscard]] bool drawn() const;
     /// What stands in the place of a figure.
     [[nodiscard]] QString sentence() const { return shown_ ? QString() : sentence_; }
     /// The least room that it asks for, px.
@@ -51,7 +52,8 @@ private:
     /// Anew with every figure, which takes all items away.
     void draw_mark();
     void show_all();
-    QCustomPlot* plot_ = nullptr;
+    class Plot;
+    Plot* plot_ = nullptr;
     core::Figure figure_;
     QString sentence_;
     bool shown_ = false;

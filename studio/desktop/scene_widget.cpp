@@ -23,8 +23,9 @@ namespace {
 
 constexpr int samples = 4;  ///< a pixel, of the smooth picture
 constexpr std::chrono::milliseconds rest{120},
-    between{10};                     ///< before a smooth picture, and between those of two views
-constexpr int points_per_inch = 72;  ///< as Qt's widgets of VTK: letters are given in pixels
+    between{10};                                   ///< before a smooth picture, and between those of two views
+constexpr std::chrono::nanoseconds turn{1000000};  ///< in which a second view belongs to the same turn of the loop
+constexpr int points_per_inch = 72;                ///< as Qt's widgets of VTK: letters are given in pixels
 
 QColor colour(const double* of) { return QColor::fromRgbF(of[0], of[1], of[2]); }
 
@@ -44,6 +45,12 @@ SceneWidget::SceneWidget(vtkGenericOpenGLRenderWindow* window, QWidget* parent) 
     interactor->SetInteractorStyle(style);
     smooth_.setSingleShot(true);
     connect(&smooth_, &QTimer::timeout, this, &SceneWidget::draw_smoothly);
+    later_.setSingleShot(true);
+    connect(&later_, &QTimer::timeout, this, [this] {
+        if (stale_) {
+            draw();
+        }
+    });
     auto& context = DrawingContext::instance();
     context.begin();
     context.when_known(this, [this] { update(); });
@@ -59,8 +66,7 @@ SceneWidget::~SceneWidget() {
 
 void SceneWidget::draw() {
     stale_ = true;
-    if (isVisible()) {
-        draw_first();
+    if (isVisible() && draw_first()) {
         update();
     }
 }
@@ -73,12 +79,20 @@ QImage SceneWidget::picture() {
 
 /// Several samples a pixel take a software renderer three times as long (30 ms for 620 x 400 points, of 10): there the
 /// first picture of anything has one, and the smooth one follows at rest.
-void SceneWidget::draw_first() {
+/// Where another view drew in this turn of the event loop, this one waits for the next: false.
+bool SceneWidget::draw_first() {
+    if (others_.isValid() && drew_last_ != this && others_.nsecsElapsed() < turn.count()) {
+        later_.start(0);
+        return false;
+    }
     const bool twice = DrawingContext::instance().by_software();
     draw_now(twice ? 0 : samples);
+    drew_last_ = this;
+    others_.start();
     if (twice) {
         smooth_.start(rest);
     }
+    return true;
 }
 
 /// Of several views each in a turn of the event loop of its own.

@@ -5,6 +5,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 
+#include <QElapsedTimer>
 #include <QImage>
 #include <QTimer>
 #include <QWidget>
@@ -34,13 +35,15 @@ protected:
 
 private:
     void fit();
-    void draw_first();
+    bool draw_first();
     void draw_smoothly();
     void draw_now(int samples_a_pixel);
     void read();
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
     QVTKInteractorAdapter adapter_;
-    QTimer smooth_;
+    QTimer smooth_, later_;
+    static inline QElapsedTimer others_;  ///< since a view drew
+    static inline const SceneWidget* drew_last_ = nullptr;
     QImage image_;
     bool stale_ = true;  ///< something else is to be drawn
     bool served_ = false;

@@ -121,6 +121,15 @@ void StudyModel::read() {
     std::sort(places_.begin(), places_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
 }
 
+void StudyModel::mark_changed_shapes() {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const QModelIndex group = index(static_cast<int>(g), name, {});
+        if (groups_[g].kind == "shape") {
+            Q_EMIT dataChanged(index(0, name, group), index(rowCount(group) - 1, name, group));
+        }
+    }
+}
+
 QModelIndex StudyModel::find(const std::string& id) const {
     const auto at = std::lower_bound(places_.begin(), places_.end(), id,
                                      [](const auto& place, const std::string& wanted) { return place.first < wanted; });

@@ -3,6 +3,7 @@
 #include <QHeaderView>
 #include <QScrollBar>
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "studio/desktop/qt_text.h"
@@ -39,11 +40,15 @@ StudyTree::StudyTree(Desk& desk, QWidget* parent)
     connect(selectionModel(), &QItemSelectionModel::selectionChanged, this, [this] { take_selection(); });
     connect(&desk, &Desk::session_changed, this, &StudyTree::read_again);
     connect(&desk, &Desk::changed, this, [this] {
+        const auto changed = std::exchange(look_.changed, look().changed);
         if (look() != look_) {
             read_again();
-        } else {
-            show_selection();
+            return;
         }
+        if (changed != look_.changed) {
+            model_->mark_changed_shapes();
+        }
+        show_selection();
     });
 }
 
@@ -82,12 +87,12 @@ void StudyTree::resizeEvent(QResizeEvent* event) {
 
 StudyTree::Look StudyTree::look() const {
     const studio::State& state = desk_.state();
-    Look look{state.stars, state.files, {}};
+    Look look{state.stars, state.files, {}, {}};
     for (const auto& [file, record] : state.exports) {
         look.shapes.push_back(file + "\n" + record.made_of);
     }
     for (const auto& [name, changes] : state.design.changes) {
-        look.shapes.push_back("*" + name);
+        look.changed.push_back(name);
     }
     for (const auto& [name, variant] : state.design.variants) {
         look.shapes.push_back(name);
@@ -128,17 +133,20 @@ void StudyTree::read_again() {
 
 /// Rows that follow one another are one range: Qt compares every range with every other, a minute for ten thousand.
 QItemSelection StudyTree::ranges_of(std::vector<QModelIndex> rows) {
-    std::sort(rows.begin(), rows.end(), [](const QModelIndex& a, const QModelIndex& b) {
-        return std::pair(a.parent().row(), a.row()) < std::pair(b.parent().row(), b.row());
-    });
+    std::vector<std::tuple<int, int, const QModelIndex*>> order;  // of group and row: a parent takes a proxy a while
+    for (const QModelIndex& row : rows) {
+        order.emplace_back(row.parent().row(), row.row(), &row);
+    }
+    std::sort(order.begin(), order.end());
     QItemSelection ranges;
-    for (std::size_t i = 0, next = 0; i < rows.size(); i = next) {
-        for (next = i + 1; next < rows.size() && rows[next].parent() == rows[i].parent() &&
-                           rows[next].row() == rows[next - 1].row() + 1;) {
+    for (std::size_t i = 0, next = 0; i < order.size(); i = next) {
+        const auto [group, first, begin] = order[i];
+        for (next = i + 1; next < order.size() && std::get<0>(order[next]) == group &&
+                           std::get<1>(order[next]) == first + static_cast<int>(next - i);) {
             ++next;
         }
-        const QModelIndex& last = rows[next - 1];
-        ranges.append(QItemSelectionRange(rows[i], last.sibling(last.row(), StudyModel::column_count - 1)));
+        const QModelIndex& last = *std::get<2>(order[next - 1]);
+        ranges.append(QItemSelectionRange(*begin, last.sibling(last.row(), StudyModel::column_count - 1)));
     }
     return ranges;
 }
@@ -168,9 +176,9 @@ void StudyTree::take_selection() {
         return;
     }
     Words words = {"select"};
-    for (const auto& index : selectionModel()->selectedRows()) {
-        if (index.parent().isValid()) {
-            words.push_back(index.data(StudyModel::id_role).toString().toStdString());
+    for (const auto& range : selectionModel()->selection()) {  // of whole rows
+        for (int row = range.top(); range.parent().isValid() && row <= range.bottom(); ++row) {
+            words.push_back(model()->index(row, 0, range.parent()).data(StudyModel::id_role).toString().toStdString());
         }
     }
     desk_.act(words);

@@ -20,6 +20,8 @@ public:
 
     StudyModel(Desk& desk, QObject* parent);
     void read();
+    /// Other shapes are changed than before: what stands there is the same.
+    void mark_changed_shapes();
     /// "case/ellipse-h5-p0" -> its place; invalid when it is not there.
     [[nodiscard]] QModelIndex find(const std::string& id) const;
 
@@ -81,6 +83,7 @@ private:
         std::set<std::string> stars;
         std::vector<std::string> files;
         std::vector<std::string> shapes;
+        std::vector<std::string> changed;  ///< shapes
         bool operator==(const Look&) const = default;
     };
     [[nodiscard]] Look look() const;

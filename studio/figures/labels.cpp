@@ -119,7 +119,7 @@ std::vector<QRectF> around(const QPointF& at, const QSizeF& size) {
     const double w = size.width();
     const double h = size.height();
     std::vector<QRectF> result;
-    for (const double away : {8.0, 18.0, 30.0}) {
+    for (const double away : {8.0, 18.0, 30.0, 45.0, 60.0}) {
         const double d = away * 0.7;
         for (const QPointF& corner :
              {QPointF(d, -d - h), QPointF(d, d), QPointF(-d - w, -d - h), QPointF(-d - w, d), QPointF(away, -h / 2),

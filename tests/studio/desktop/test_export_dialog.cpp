@@ -7,12 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <QAction>
+#include <QFileDialog>
 #include <QLabel>
 #include <QLineEdit>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSignalSpy>
 #include <QTest>
+#include <QTimer>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -66,6 +68,41 @@ TEST_F(Window, AnExportIsShownProvedAndWritten) {
     dialog->write(folder_.path() / "lift.h");
     settle(*window_);
     EXPECT_EQ(core::read_file(folder_.path() / "lift.h").substr(0, 40), dialog->preview().toStdString().substr(0, 40));
+    delete dialog;
+}
+
+// It began in the folder that the program was started in, which may be anywhere; the note named no file.
+TEST_F(Window, FilesAreWrittenIntoTheStudysFolder) {
+    const fs::path study = copy_of_study();
+    open(study);
+    act("workspace tables");
+    settle(*window_);
+    auto* dialog = window_->show_export(panel<ForcePanel>().table(), table_of_study(window_->desk().session(), "lift"));
+    const auto folder_asked_in = [&] {
+        QString folder;
+        QTimer::singleShot(200, [&folder] {
+            if (auto* asks = qobject_cast<QFileDialog*>(QApplication::activeModalWidget())) {
+                folder = asks->directory().absolutePath();
+                asks->reject();
+            }
+        });
+        for (auto* button : dialog->findChildren<QPushButton*>()) {
+            if (button->text() == "&Write …") {
+                button->click();
+            }
+        }
+        return folder.toStdString();
+    };
+    EXPECT_EQ(folder_asked_in(), study.string());
+    EXPECT_EQ(window_->write_folder().toStdString(), study.string());
+    const fs::path elsewhere = folder_.path() / "elsewhere";
+    fs::create_directories(elsewhere);
+    dialog->write(elsewhere / "lift.h");
+    settle(*window_);
+    EXPECT_EQ(window_->write_folder().toStdString(), elsewhere.string()) << "where it was written last";
+    EXPECT_TRUE(
+        panel<ProblemList>().text().contains("Wrote " + QString::fromStdString((elsewhere / "lift.h").string())))
+        << panel<ProblemList>().text().toStdString();
     delete dialog;
 }
 

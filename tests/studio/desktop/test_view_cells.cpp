@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <QMenu>
+#include <QTabBar>
 #include <QToolButton>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "studio/desktop/plot_view.h"
 #include "studio/desktop/qt_text.h"
 #include "studio/desktop/region_panel.h"
+#include "studio/desktop/side_by_side.h"
 #include "studio/desktop/state/words.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -83,6 +85,40 @@ TEST_F(ViewCells, AreChosenInEveryWorkspace) {
 }
 
 // What is hidden leaves its room to the others.
+// Every figure was drawn at once, those under other tabs and of other workspaces too.
+TEST_F(ViewCells, AFigureIsDrawnWhenItIsSeen) {
+    open(computed_study());
+    act("workspace design");
+    settle(*window_);
+    const SideBySide* choice = nullptr;
+    for (const auto* widget : shown().findChildren<QWidget*>()) {
+        const auto* one = dynamic_cast<const SideBySide*>(widget);
+        choice = one != nullptr ? one : choice;
+    }
+    ASSERT_NE(choice, nullptr);
+    ASSERT_TRUE(choice->tabs()->isVisible()) << "there is room for one of them";
+    const auto plots = choice->findChildren<PlotView*>();
+    ASSERT_EQ(plots.size(), 2);
+    act("operation gap=8mm");
+    settle(*window_);
+    for (const auto* plot : plots) {
+        ASSERT_TRUE(plot->has_figure());
+        EXPECT_EQ(plot->drawn(), plot->isVisible());
+    }
+    act("show map");
+    settle(*window_);
+    for (const auto* plot : plots) {
+        EXPECT_TRUE(plot->drawn());
+    }
+    act("workspace tables");
+    settle(*window_);
+    window_->resize(window_->width() + 60, window_->height());
+    settle(*window_);
+    for (const auto* plot : window_->findChildren<PlotView*>()) {
+        EXPECT_TRUE(plot->drawn() || !plot->isVisible()) << plot->accessibleName().toStdString();
+    }
+}
+
 TEST_F(ViewCells, AHiddenOneLeavesItsRoom) {
     window_->resize(1900, 1000);
     open(computed_study());

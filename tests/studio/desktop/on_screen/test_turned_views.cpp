@@ -4,6 +4,8 @@
 
 #include "core/figure.h"
 #include "studio/desktop/design_panel.h"
+#include "studio/desktop/fields_panel.h"
+#include "studio/desktop/fitted_picture.h"
 #include "studio/desktop/scene.h"
 #include "tests/studio/desktop/on_screen/screen_fixture.h"
 
@@ -61,6 +63,37 @@ TEST_F(Turned, ComparesViewIsKept) {
     window_->desk().open_session_file(file);
     EXPECT_LT(difference(turned, seen(), 40), 0.002) << "after the session was opened again";
     EXPECT_EQ(window_->desk().state().fields.turned, pose);
+}
+
+// They were seen from the camera that was named last, beside a body that a hand had turned.
+TEST_F(Turned, DifferencesFollowTheHand) {
+    open(computed_study());
+    act("workspace compare");
+    act("select case/ellipse-h5-p0 case/ellipse-h2-p0");
+    act("fields camera=bottom difference=on");
+    settle(*window_);
+    const auto difference_seen = [&]() -> const FittedPicture* {
+        for (const auto* widget : panel<FieldsPanel>().findChildren<QWidget*>()) {
+            const auto* one = dynamic_cast<const FittedPicture*>(widget);
+            if (one != nullptr && one->isVisible()) {
+                return one;
+            }
+        }
+        return nullptr;
+    };
+    ASSERT_NE(difference_seen(), nullptr);
+    EXPECT_TRUE(difference_seen()->toolTip().contains("seen from below")) << difference_seen()->toolTip().toStdString();
+    const QImage before = difference_seen()->image;
+    drag({60, 25});
+    ASSERT_TRUE(window_->desk().state().fields.turned);
+    settle(*window_);
+    EXPECT_TRUE(difference_seen()->toolTip().contains("turned by hand")) << difference_seen()->toolTip().toStdString();
+    EXPECT_GT(difference(before.convertToFormat(QImage::Format_RGB32),
+                         difference_seen()->image.convertToFormat(QImage::Format_RGB32)),
+              0.02);
+    window_->desk().undo();
+    settle(*window_);
+    EXPECT_TRUE(difference_seen()->toolTip().contains("seen from below")) << difference_seen()->toolTip().toStdString();
 }
 
 TEST_F(Turned, ASteppedWheelIsOneStepOfTheHistory) {
