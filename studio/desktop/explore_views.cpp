@@ -59,7 +59,7 @@ std::vector<const core::Column*> columns_of(const core::Table& table) {
     return columns;
 }
 
-QString axis_words(const std::string& name) { return qt(name).replace('_', ' '); }
+QString axis_words(const std::string& name) { return qt(name).replace('_', ' ').replace('.', ' '); }
 
 std::string unit_of(const core::Column& column) {
     const bool written = column.unit == "m^3" || column.unit == "m^2";
@@ -118,9 +118,7 @@ void ExplorePanel::draw_scatter() {
         return;
     }
     core::Figure figure;
-    const auto label = [](const core::Column& column) {
-        return axis_words(column.name).replace('.', ' ').toStdString();
-    };
+    const auto label = [](const core::Column& column) { return axis_words(column.name).toStdString(); };
     figure.x = {label(*x), unit_of(*x), 0, 0, false};
     figure.y = {label(*y), unit_of(*y), 0, 0, false};
     const auto to_x = core::conversion(x->unit, unit_of(*x));

@@ -128,11 +128,16 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         }
         column->addWidget(cell->scene->widget(), 1);
         cell->picture = new FittedPicture(cell->box);
+        cell->picture->setSizePolicy(cell->scene->widget()->sizePolicy());  // else it left its room to the surfaces
+        cell->picture->setMinimumSize(cell->scene->widget()->minimumSize());
         cell->picture->hide();
         column->addWidget(cell->picture, 1);
         cells_.push_back(std::move(cell));
     }
     const int columns = sheet_columns(sources.size());
+    for (int column = 0; column < std::max(columns, grid_->columnCount()); ++column) {
+        grid_->setColumnStretch(column, column < columns ? 1 : 0);
+    }
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         grid_->removeWidget(cells_[i]->box);
         cells_[i]->box->setVisible(i < sources.size());

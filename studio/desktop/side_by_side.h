@@ -36,7 +36,10 @@ public:
         column->addWidget(head_);
         column->addWidget(view, 1);
     }
-    void set_title(const QString& title) { title_->setText(title); }
+    void set_title(const QString& title) {
+        title_->setText(title);
+        title_->setToolTip(title);  // it may be longer than its place
+    }
     /// Beside the title.
     void add_tool(QToolButton* tool) {
         tool->setAutoRaise(true);

@@ -83,6 +83,7 @@ TEST_F(Turned, DifferencesFollowTheHand) {
     };
     ASSERT_NE(difference_seen(), nullptr);
     EXPECT_TRUE(difference_seen()->toolTip().contains("seen from below")) << difference_seen()->toolTip().toStdString();
+    EXPECT_NEAR(difference_seen()->width(), view()->width(), 4) << "it had no room beside a surface";
     const QImage before = difference_seen()->image;
     drag({60, 25});
     ASSERT_TRUE(window_->desk().state().fields.turned);
