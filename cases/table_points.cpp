@@ -21,8 +21,8 @@ double mesh_sigma(const TableSpec& spec, const StudyResults& results) {
     if (mesh == nullptr) {
         throw core::InputError("missing",
                                "the mesh uncertainty '" + spec.mesh_uncertainty + "' that the table '" + spec.name +
-                                   "' names was not found",
-                               {}, "see why its step failed");
+                                   "' names is not among the results: its step has failed or not run yet",
+                               {}, "compute the study; where the step fails, see why");
     }
     const auto* found = mesh->find(spec.quantity);
     if (found == nullptr) {

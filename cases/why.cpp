@@ -202,11 +202,12 @@ private:
                 }
             }
         }
-        way_.notes.push_back(any ? "this file differs from what was exported: it was changed since, and what follows "
-                                   "is of " +
-                                       shown(head.result) + ", which its head names"
-                                 : "the store has no export of " + shown(head.result) + " " + head.id +
-                                       " any more: whether the file was changed since is not known");
+        way_.notes.push_back(
+            any ? "this file differs from what was exported for the study: it was written by hand (with another "
+                  "name or error, say) or changed since; what follows is of " +
+                      shown(head.result) + ", which its head names"
+                : "the store has no export of " + shown(head.result) + " " + head.id +
+                      " any more: whether the file was changed since is not known");
     }
 
     using Hit = std::pair<Known::const_iterator, Fact>;

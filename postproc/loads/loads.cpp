@@ -474,7 +474,8 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const bool ends_at_zero =
                 std::abs(extent_.lower[k]) < 1e-3 * size || std::abs(extent_.upper[k]) < 1e-3 * size;
-            if (std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero && area_in_plane(k, 0) < 0.01 * norm(open)) {
+            if (!mirrors_motion(k, axes_.forward, axes_.up) && std::abs(open[k]) > 0.99 * norm(open) && ends_at_zero &&
+                area_in_plane(k, 0) < 0.01 * norm(open)) {
                 return {"xyz"[k]};
             }
         }

@@ -31,16 +31,22 @@ MirrorPlane mirror_plane_from(const std::string& text) {
     return plane;
 }
 
+namespace {
+
+bool is_along(const Vector& direction, std::size_t axis) { return std::abs(direction[axis]) > 0.5 * norm(direction); }
+
+}  // namespace
+
+bool mirrors_motion(std::size_t axis, const Vector& forward, const Vector& up) {
+    return is_along(up, axis) || is_along(forward, axis);
+}
+
 void check_mirror_lies_along(const MirrorPlane& plane, const Vector& forward, const Vector& up) {
-    if (!plane.is_half()) {
+    if (!plane.is_half() || !mirrors_motion(static_cast<std::size_t>(plane.axis), forward, up)) {
         return;
     }
     const auto normal = static_cast<std::size_t>(plane.axis);
-    const auto across = [&](const Vector& axis) { return std::abs(axis[normal]) > 0.5 * norm(axis); };
-    const bool lift = across(up);
-    if (!lift && !across(forward)) {
-        return;
-    }
+    const bool lift = is_along(up, normal);
     const Vector starboard = cross(forward, up);
     const auto side = std::max_element(starboard.begin(), starboard.end(),
                                        [](double a, double b) { return std::abs(a) < std::abs(b); }) -

@@ -22,8 +22,10 @@ struct MirrorPlane {
 /// "y", "y=0.1", "z=-5 mm"; "" and "none": a whole model. Throws core::UsageError for anything else.
 MirrorPlane mirror_plane_from(const std::string& text);
 
-/// Throws core::UsageError for a plane across the vehicle's up or forward axis: every lift, or every drag, would be
-/// zero.
+/// True where a plane across that axis of the file lies across the vehicle's up or forward axis.
+bool mirrors_motion(std::size_t axis, const Vector& forward, const Vector& up);
+
+/// Throws core::UsageError for such a plane: every lift, or every drag, would be zero.
 void check_mirror_lies_along(const MirrorPlane& plane, const Vector& forward, const Vector& up);
 
 /// A half model's plane in its place; axis -1: none.

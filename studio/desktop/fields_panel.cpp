@@ -144,7 +144,7 @@ void FieldsPanel::lay_out(const std::vector<Source>& sources) {
         if (i < sources.size()) {
             grid_->addWidget(cells_[i]->box, static_cast<int>(i) / columns, static_cast<int>(i) % columns);
         } else {
-            cells_[i]->ready = false;
+            cells_[i]->ready = cells_[i]->reading = false;
             cells_[i]->failed.clear();
             cells_[i]->source = {};
             cells_[i]->field.reset();
@@ -167,7 +167,6 @@ void FieldsPanel::draw_again(bool) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
         Cell& cell = *cells_[i];
         const auto stamp = core::stamp_of(sources[i].file);
-        cell.title->setText(sources[i].title);
         cell.title->setToolTip(sources[i].title + (shared_.isEmpty() ? QString() : "\nall: " + shared_));
         cell.source.title = sources[i].title;
         if (cell.source.key() != sources[i].key() || !(cell.stamp == stamp)) {
@@ -176,8 +175,10 @@ void FieldsPanel::draw_again(bool) {
             cell.loads.reset();
             cell.no_loads.clear();
             cell.failed.clear();
+            cell.reading = true;
             read(i);
         }
+        cell.title->setText(sources[i].title + cell.mark());
         all_ready = all_ready && (cell.ready || !cell.failed.isEmpty());
     }
     show_numbers();
@@ -207,6 +208,7 @@ void FieldsPanel::taken(std::size_t index, const std::shared_ptr<const postproc:
     cell.scene->show(prepared, first);
     cell.field = field;
     cell.ready = true;
+    cell.reading = false;
     pictures_of_.clear();
     for (const auto& found : cell.scene->field()->problems) {
         Q_EMIT problem(found);

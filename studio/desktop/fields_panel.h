@@ -96,6 +96,8 @@ private:
         std::optional<postproc::LikelyHalf> half;  ///< what its boundaries say
         std::string shown;                         ///< whose surface it is, also while a newer one is read
         bool ready = false;
+        bool reading = false;  ///< what is drawn is of what stood here before
+        [[nodiscard]] QString mark() const { return reading ? "   (reading; still the picture before)" : ""; }
         QString empty;  ///< why nothing is seen
     };
     void build();

@@ -139,7 +139,7 @@ void FieldsPanel::show_pictures() {
             cell.picture->show_text(cell.failed);
         }
         const QString less = as_picture && !views ? QString("  less the first") : as_picture ? QString() : cell.empty;
-        cell.title->setText(cell.source.title + (failed ? QString("   (not read)") : less));
+        cell.title->setText(cell.source.title + (failed ? QString("   (not read)") : less + cell.mark()));
         key += cell.source.key() + "\n";
         if (as_picture) {
             wanted.push_back(i);

@@ -60,7 +60,8 @@ FieldsPanel::Source FieldsPanel::source_of(const std::filesystem::path& file) co
         source.reading.units.assign(said->second.units.begin(), said->second.units.end());
         source.zones = said->second.zones;
         source.density = said->second.density;
-        source.symmetry = said->second.symmetry.empty() ? source.symmetry : said->second.symmetry;
+        const std::string& half = said->second.symmetry;
+        source.symmetry = half == "none" ? "" : half.empty() ? source.symmetry : half;
     }
     return source;
 }
@@ -293,7 +294,7 @@ void FieldsPanel::warn_of_loads(std::size_t index) {
 
 void FieldsPanel::not_read(std::size_t index, const QString& why) {
     Cell& cell = *cells_[index];
-    cell.ready = false;
+    cell.ready = cell.reading = false;
     cell.field.reset();
     cell.failed = why;
     cell.no_loads = why.toStdString();

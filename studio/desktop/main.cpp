@@ -44,7 +44,7 @@ int parse(int argc, char** argv, Options& options) {
     app.add_option(
         "STUDY", options.files,
         "folder of a study (it holds study.toml), a session (.ubs), a SHAPE.toml, or CFD files and folders of "
-        "them; more with Ctrl+O");
+        "them; more with Ctrl+Shift+O");
     app.add_option("--screenshot", options.screenshots,
                    "load the study, visit each workspace, save pictures of the window into this folder, and end")
         ->type_name("FOLDER");
@@ -66,8 +66,10 @@ int parse(int argc, char** argv, Options& options) {
         "  underbody-studio --replay done.log > state.json\n"
         "Keys: F1 all keys, Ctrl+K find a command, F2 Design, F3 Explore, F4 Compare, F6 Tables, F7 Stability, F8 "
         "Loop,\n"
-        "Ctrl+O open, Ctrl+R compute what changed, F5 reload, Ctrl+Z undo, Ctrl+Shift+Z redo, Ctrl+S save session,\n"
-        "Ctrl+E export for a controller, F12 export picture, U T S R O views of the body, Esc cancel.\n"
+        "Ctrl+O open, Ctrl+Shift+O open files, Ctrl+R compute what changed, F5 reload, Ctrl+Z undo, Ctrl+Shift+Z "
+        "redo,\n"
+        "Ctrl+S save session, Ctrl+E export for a controller, F12 export picture, U T S R O views of the body, Esc "
+        "cancel.\n"
         "Exit codes: 0 done, 1 defect of the program, 2 wrong use, 3 wrong input or no display.");
     try {
         app.parse(argc, argv);

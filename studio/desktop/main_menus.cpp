@@ -47,10 +47,11 @@ QAction* MainWindow::add(QMenu* menu, const QString& text, const QString& key, c
 
 void MainWindow::build_file_menu() {
     auto* menu = menuBar()->addMenu("&File");
-    add(menu, "&Open study …", "Ctrl+O", [this] {
-        const QString folder = QFileDialog::getExistingDirectory(this, "Folder of the study (it holds study.toml)");
+    add(menu, "&Open study or folder …", "Ctrl+O", [this] {
+        const QString folder = QFileDialog::getExistingDirectory(
+            this, "A study (it holds study.toml), or a folder of CFD or measurements");
         if (!folder.isEmpty()) {
-            open_study(folder.toStdString());
+            take_files({folder.toStdString()});
         }
     });
     recent_ = menu->addMenu("Open &recent");
@@ -262,7 +263,8 @@ bool MainWindow::write_found_model(const std::string& measurement) {
     }
     if (!ask("Write into the study",
              qt(accepted.sentence) + "\n\nWrites " + qt(accepted.model.string()) + " and makes it the model of " +
-                 users.join(", ") + ". The old model stays where it is.",
+                 users.join(", ") +
+                 ". The old model stays where it is. Undo does not take this back: a line of study.toml does.",
              "Write it")) {
         return false;
     }

@@ -9,6 +9,7 @@
 #include <QFileInfo>
 #include <QFileSystemWatcher>
 #include <QLabel>
+#include <QLineEdit>
 #include <QMenu>
 #include <QMessageBox>
 #include <QMimeData>
@@ -16,6 +17,7 @@
 #include <QPushButton>
 #include <QScreen>
 #include <QSettings>
+#include <QShortcut>
 #include <QStackedWidget>
 #include <QStandardPaths>
 #include <QStatusBar>
@@ -176,20 +178,25 @@ void MainWindow::build_status() {
     bar_->setAccessibleName("Progress");
     cancel_ = new QToolButton;
     cancel_->setText("Cancel");
-    cancel_->setShortcut(QKeySequence("Esc"));
     cancel_->setToolTip("Cancel what is running in front (Esc); each job has its own button under Jobs");
-    connect(cancel_, &QToolButton::clicked, this, [this] {
-        if (const auto rows = jobs_->rows(); !rows.empty()) {
-            jobs_->cancel(rows.front().id);
-            statusBar()->showMessage("cancelled: " + rows.front().what, 4000);
+    connect(cancel_, &QToolButton::clicked, this, &MainWindow::cancel_first);
+    auto* escape = new QShortcut(QKeySequence(Qt::Key_Escape), this);
+    escape->setEnabled(false);
+    connect(escape, &QShortcut::activated, this, [this] {
+        if (qobject_cast<QLineEdit*>(focusWidget()) != nullptr) {
+            statusBar()->showMessage(
+                "Esc cancels nothing while a field has the keyboard: leave it first, or press Cancel");
+        } else {
+            cancel_first();
         }
     });
     for (auto* widget : std::initializer_list<QWidget*>{doing_, bar_, cancel_}) {
         statusBar()->addPermanentWidget(widget);
         widget->hide();
     }
-    connect(jobs_, &Jobs::progressed, this, [this](double fraction, const QString& what) {
+    connect(jobs_, &Jobs::progressed, this, [this, escape](double fraction, const QString& what) {
         const bool running = !what.isEmpty();
+        escape->setEnabled(running);
         doing_->setText(what.size() > 80 ? what.left(79) + "…" : what);
         bar_->setValue(static_cast<int>(1000 * fraction));
         const auto count = jobs_->rows().size();
@@ -198,6 +205,19 @@ void MainWindow::build_status() {
             widget->setVisible(running);
         }
     });
+}
+
+void MainWindow::cancel_first() {
+    const auto rows = jobs_->rows();
+    if (rows.empty()) {
+        return;
+    }
+    jobs_->cancel(rows.front().id);
+    const std::string what = rows.front().what.toStdString();
+    statusBar()->showMessage("cancelled: " + rows.front().what, 4000);
+    problems_->add({core::Problem::Severity::note,
+                    "cancelled by hand: " + what + "; begun again, it goes on with what is done",
+                    {}});
 }
 
 Panel* MainWindow::current() const {

@@ -116,6 +116,7 @@ private:
     void build_tree();
     void build_below();
     void build_status();
+    void cancel_first();
     void build_tool_bar();
     void build_file_menu();
     void build_edit_menu();

@@ -88,6 +88,15 @@ void NumberEdit::refuse(const QString& why) {
     QApplication::sendEvent(this, &told);  // up to the window, whose status line shows it
 }
 
+bool NumberEdit::event(QEvent* event) {
+    const bool asked = event->type() == QEvent::ShortcutOverride;
+    if (asked && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape && isModified()) {
+        event->accept();  // it takes back what was typed
+        return true;
+    }
+    return QLineEdit::event(event);
+}
+
 void NumberEdit::keyPressEvent(QKeyEvent* event) {
     const int by = event->key() == Qt::Key_Up ? 1 : event->key() == Qt::Key_Down ? -1 : 0;
     if (by != 0 && value_) {

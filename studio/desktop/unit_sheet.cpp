@@ -56,6 +56,7 @@ UnitSheet::UnitSheet(Desk& desk, QWidget* parent) : QDialog(parent), desk_(desk)
     half_ = new QComboBox;
     half_->setAccessibleName("Half model");
     half_->addItem("as the study, else the whole body", "");
+    half_->addItem("the whole body", "none");
     for (const char* axis : {"y", "x", "z"}) {
         half_->addItem(QString("half, its plane across %1").arg(axis), axis);
     }

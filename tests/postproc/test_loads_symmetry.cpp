@@ -106,6 +106,18 @@ TEST(Loads, OfAHalfModelAcrossTheUpOrForwardAxisAreRefused) {
                 testing::AllOf(HasSubstr("every drag would be zero"), HasSubstr("option 'symmetry x'")));
 }
 
+// It was advised to name a plane that is refused.
+TEST(Loads, AdviseNoPlaneThatWouldBeRefused) {
+    const auto p = [](const Vector& x) { return 100 + 10 * x[2]; };
+    const Field half = field_of({ellipsoid(12, {0.1, 0.08, 0.06}, p, true, false, "hull")});
+    LoadsOptions options = about({0, 0, 0}, "");
+    options.forward = axis_from("+x");
+    options.up = axis_from("-z");
+    EXPECT_EQ(loads(half, options).cut_across, "y");
+    options.up = axis_from("+y");
+    EXPECT_EQ(loads(half, options).cut_across, "");
+}
+
 TEST(Loads, OfAPlaneCaseArePerMetreDepth) {
     // A circle of lines, p = -rho g y: buoyancy per metre is rho g times the polygon's area.
     constexpr int count = 90;

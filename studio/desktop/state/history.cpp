@@ -16,6 +16,7 @@ void History::end_gesture() {
         held_line_.clear();
         log(line);
     }
+    looking_.clear();
     if (position_ > 0) {
         steps_[position_ - 1].gesture.clear();
     }
@@ -28,6 +29,10 @@ bool History::act(const Words& words, const Session& session, const std::string&
     }
     const std::string key = merge_key(words);
     const bool view = kind_of(words).view;
+    if (view && position_ < steps_.size()) {
+        look(std::make_shared<const State>(std::move(next)), line_of(words), gesture);
+        return true;
+    }
     const bool at_end = position_ == steps_.size() && position_ > 0;
     Step* last = at_end ? &steps_.back() : nullptr;
     const bool same_gesture = last != nullptr && !gesture.empty() && last->gesture == gesture && last->merge_key == key;
@@ -61,6 +66,19 @@ bool History::act(const Words& words, const Session& session, const std::string&
         held_line_ = step.line;
     }
     return true;
+}
+
+void History::look(StatePointer next, const std::string& line, const std::string& gesture) {
+    if (gesture.empty() || gesture != looking_) {
+        end_gesture();
+    }
+    looking_ = gesture;
+    state_ = std::move(next);
+    if (gesture.empty()) {
+        log(line);
+    } else {
+        held_line_ = line;
+    }
 }
 
 bool History::undo() {

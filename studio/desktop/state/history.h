@@ -28,8 +28,9 @@ public:
     /// How many of the steps are done (the others can be redone).
     [[nodiscard]] std::size_t position() const { return position_; }
 
-    /// Carries an action out. False when it changed nothing (no step then). What was undone is dropped. Actions of one
-    /// `gesture` (a drag; not empty) with the same merge key are one step. Throws as `applied`; the state stays.
+    /// Carries an action out. False when it changed nothing (no step then). What was undone is dropped, but not by an
+    /// action that changes what is seen only: that one is no step then. Actions of one `gesture` (a drag; not empty)
+    /// with the same merge key are one step. Throws as `applied`; the state stays.
     bool act(const Words& words, const Session& session, const std::string& gesture = {});
     /// The line of a gesture is logged when it ends.
     void end_gesture();
@@ -44,10 +45,13 @@ public:
 
 private:
     void log(const std::string& line);
+    /// Looks about while there is something to redo: no step.
+    void look(StatePointer next, const std::string& line, const std::string& gesture);
     StatePointer state_;
     std::vector<Step> steps_;
     std::size_t position_ = 0;
     std::string held_line_;  ///< of a gesture that goes on
+    std::string looking_;    ///< that gesture, where it looks about
 };
 
 }  // namespace underbody::studio

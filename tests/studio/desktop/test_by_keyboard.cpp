@@ -11,6 +11,8 @@
 #include <QTableView>
 #include <QTableWidget>
 #include <QTest>
+#include <chrono>
+#include <thread>
 
 #include "studio/desktop/design_panel.h"
 #include "studio/desktop/explore_panel.h"
@@ -19,6 +21,7 @@
 #include "studio/desktop/force_panel.h"
 #include "studio/desktop/parallel_view.h"
 #include "studio/desktop/parameter_row.h"
+#include "studio/desktop/problems_panel.h"
 #include "studio/desktop/take_in_sheet.h"
 #include "tests/studio/desktop/window_fixture.h"
 
@@ -231,6 +234,35 @@ TEST_F(ByKeyboard, ATableIsProved) {
     key(Qt::Key_Escape);
     settle(*window_);
     EXPECT_FALSE(dialog->isVisible());
+}
+
+// Esc in a field ended the computation of the study, and said so for four seconds.
+TEST_F(ByKeyboard, EscInAFieldCancelsNothing) {
+    begin(copy_of_study());
+    key(Qt::Key_F2);
+    settle(*window_);
+    window_->jobs().start("run", "counting", [](core::Progress& progress) -> std::function<void()> {
+        while (!progress.cancelled()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        throw core::Cancelled();
+    });
+    const auto* bar = window_->findChild<QProgressBar*>();
+    ASSERT_TRUE(QTest::qWaitFor([&] { return bar->isVisible(); }));
+    auto* number = panel<DesignPanel>().findChild<ParameterRow*>("body.length")->number();
+    ASSERT_TRUE(tab_to(number));
+    const QString before = number->text();
+    type("7");
+    key(Qt::Key_Escape);
+    EXPECT_EQ(number->text(), before) << "what was typed is taken back";
+    key(Qt::Key_Escape);
+    EXPECT_TRUE(window_->jobs().busy("run"));
+    panel<DesignPanel>().findChild<ParameterRow*>("body.length")->slider()->setFocus();
+    key(Qt::Key_Escape);
+    EXPECT_FALSE(window_->jobs().busy("run"));
+    settle(*window_);
+    const auto* list = window_->findChild<ProblemList*>();
+    EXPECT_TRUE(list->topLevelItem(list->topLevelItemCount() - 1)->text(1).contains("cancelled by hand: counting"));
 }
 
 }  // namespace

@@ -182,6 +182,33 @@ TEST(StudioActions, EachIsDoneUndoneAndRedone) {
     EXPECT_EQ(state_hash(*history.state()), last);
 }
 
+// A look at another workspace lost what could be redone.
+TEST(StudioHistory, LookingAboutKeepsWhatCanBeRedone) {
+    History history(opened());
+    std::vector<std::string> lines;
+    history.on_line = [&](const std::string& line) { lines.push_back(line); };
+    const auto act = [&](const char* line, const char* gesture = "") {
+        return history.act(words_of(line), *evie_session(), gesture);
+    };
+    act("operation gap=5mm");
+    act("operation gap=6mm");
+    const std::string last = state_hash(*history.state());
+    history.undo();
+    ASSERT_TRUE(act("workspace tables"));
+    ASSERT_TRUE(act("turn design 0.3,0.2,-0.1/0,0,0/0,0,1/0.05", "drag"));
+    ASSERT_TRUE(act("turn design 0.3,0.3,-0.1/0,0,0/0,0,1/0.05", "drag"));
+    EXPECT_EQ(history.state()->workspace, "tables");
+    EXPECT_EQ(history.steps().size(), 2U);
+    ASSERT_TRUE(history.redo());
+    EXPECT_EQ(state_hash(*history.state()), last);
+    EXPECT_EQ(lines, (std::vector<std::string>{"operation gap=5mm", "operation gap=6mm", "undo", "workspace tables",
+                                               "turn design 0.3,0.3,-0.1/0,0,0/0,0,1/0.05", "redo"}));
+    history.undo();
+    act("operation gap=7mm");
+    EXPECT_EQ(history.steps().size(), 2U) << "what changes something drops it";
+    EXPECT_FALSE(history.redo());
+}
+
 // A view that a hand turned was lost with the window.
 TEST(StudioState, AViewThatWasTurnedIsKept) {
     State state = opened();
@@ -251,6 +278,9 @@ TEST(StudioActions, WhatAFileDoesNotSayGoesWithIt) {
     EXPECT_EQ(history.state()->readings.size(), 2U);
     EXPECT_THROW(act("read " + a + " length_unit=Pa"), core::Error);
     EXPECT_THROW(act("read " + a + " lenght_unit=mm"), core::Error);
+    act("read " + a + " symmetry=none");
+    EXPECT_EQ(history.state()->readings.at(a).symmetry, "none") << "whole, whatever the study says";
+    act("read " + a + " symmetry=y");
     act("locate " + a + " " + moved);
     EXPECT_EQ(history.state()->readings.at(moved).length_unit, "mm");
     act("remove " + b);
