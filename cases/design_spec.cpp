@@ -267,9 +267,10 @@ namespace {
 /// Of the condition at which it comes nearest to the ground: how far it stands below it, over that gap.
 double below_ground(const DesignSpec& spec, const geometry::BodyShape& shape) {
     double worst = -1;
+    const std::vector<double> lowest = geometry::clearances_of_base(shape, spec.pitches);
     for (const double gap : spec.gaps) {
-        for (const double pitch : spec.pitches) {
-            worst = std::max(worst, -geometry::clearance_of_base(shape, gap, pitch) / gap);
+        for (const double low : lowest) {
+            worst = std::max(worst, -(gap + low) / gap);
         }
     }
     return worst;

@@ -52,6 +52,8 @@ tables::Surrogate Design::surrogate(const std::string& quantity, core::Progress&
 std::map<std::string, tables::Surrogate> Design::surrogates(core::Progress& progress) const {
     std::map<std::string, tables::Surrogate> result;
     for (const std::string& q : spec_.quantities) {
+        progress.report(static_cast<double>(result.size()) / static_cast<double>(spec_.quantities.size()),
+                        "surrogate of " + q);
         result.emplace(q, surrogate(q, progress));
     }
     return result;

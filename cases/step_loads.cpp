@@ -172,7 +172,8 @@ Value compute_loads(Engine& engine, const Case& entry) {
     reading.surfaces_only = true;
     const postproc::Field field = postproc::read_field(entry.file, reading, engine.progress);
     postproc::LoadsResult result = postproc::loads(field, loads_options(engine.study, entry), engine.progress);
-    const postproc::Declared said = declared(entry);
+    postproc::Declared said = declared(entry);
+    said.speed = engine.study.speed_of(entry).value_or(NAN);
     const core::Problems faults = postproc::declared_faults(field, result, said);
     result.problems.insert(result.problems.end(), faults.begin(), faults.end());
     core::Problems problems = findings(engine, field, result);

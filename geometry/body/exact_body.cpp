@@ -112,7 +112,7 @@ double SideProfile::distance(double half, double height) const {
     return f / (2 * std::hypot(dx / square(semi_), dz / square(rise_)));
 }
 
-ExactBody::ExactBody(const BodyShape& shape)
+ExactBody::ExactBody(const BodyShape& shape, bool tabulated)
     : shape_(shape), a_(shape.length / 2), b_(shape.width / 2), c_(shape.height / 2), depth_(shape.base_depth()) {
     const BodyShape::BaseExtent extent = shape.base_extent();
     taper_ = shape.taper / (extent.nose - extent.tail);
@@ -122,7 +122,7 @@ ExactBody::ExactBody(const BodyShape& shape)
         along_ = SideProfile(-extent.tail, a_, depth_, shape.edge_radius);
         across_ = SideProfile(extent.half_width, b_, depth_, shape.edge_radius);
     }
-    if (shape.edge_radius > 0) {
+    if (shape.edge_radius > 0 && tabulated) {
         tabulate_spine();
     }
     highest_fillet_ = std::max(fillet_top(0), fillet_top(half_pi));
@@ -201,6 +201,10 @@ ExactBody::Spine ExactBody::spine(double t) const {
     const double sign_y = std::remainder(t, 2 * std::numbers::pi) < 0 ? -1 : 1;
     const double sign_x = folded > half_pi ? -1 : 1;
     folded = sign_x < 0 ? std::numbers::pi - folded : folded;
+    if (spine_table_.empty()) {
+        const Spine one = solved_spine(folded);
+        return {sign_x * one.x, sign_y * one.y, one.height};
+    }
     const double position = folded / half_pi * spine_steps;
     const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(position), spine_steps - 1);
     const double w = position - static_cast<double>(i);

@@ -71,7 +71,10 @@ struct VolumeMoments {
 class ExactBody {
 public:
     /// The shape must have passed `check`.
-    explicit ExactBody(const BodyShape& shape);
+    explicit ExactBody(const BodyShape& shape) : ExactBody(shape, true) {}
+    /// The same, to a rounding, for who asks for less than some hundred points: its rounded edge is solved for where it
+    /// is asked for, and not tabulated first.
+    static ExactBody of_few_points(const BodyShape& shape) { return {shape, false}; }
 
     [[nodiscard]] const BodyShape& shape() const { return shape_; }
     [[nodiscard]] double semi_x() const { return a_; }
@@ -124,13 +127,14 @@ public:
     [[nodiscard]] double distance_to_base(const Vec3& p) const;
 
 private:
+    ExactBody(const BodyShape& shape, bool tabulated);
     struct Spine {
         double x = 0, y = 0, height = 0;  // centre of the ball, height of its contact
     };
     [[nodiscard]] Spine spine(double t) const;
     [[nodiscard]] Spine solved_spine(double t) const;
     void tabulate_spine();
-    // One quadrant; cubics between the entries, to rounding.
+    // One quadrant; cubics between the entries, to rounding. Empty: each is solved for.
     struct SpineEntry {
         Spine value, slope;
     };

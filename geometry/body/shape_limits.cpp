@@ -107,7 +107,7 @@ bool edge_is_regular(const BodyShape& shape, double radius) {
         return false;
     }
     trial.edge_radius = radius;
-    const ExactBody body(trial);
+    const ExactBody body = ExactBody::of_few_points(trial);
     const double ratio = 0.2;
     const Vec3 nose = body.ellipsoid_point(0, 0), port = body.ellipsoid_point(0, std::numbers::pi / 2);
     const double ellipse_nose = std::sqrt(1 - shape.base_cut * shape.base_cut) * shape.length / 2;
@@ -263,7 +263,7 @@ double protrusion_foot_radius(const Protrusion& p) {
 }
 
 std::vector<OutlinePoint> flat_base_outline(const BodyShape& shape, std::size_t points) {
-    const ExactBody body(without_additions(shape));
+    const ExactBody body = ExactBody::of_few_points(without_additions(shape));
     std::vector<OutlinePoint> outline;
     for (std::size_t i = 0; i <= points; ++i) {
         const double t = std::numbers::pi * static_cast<double>(i) / static_cast<double>(points);

@@ -70,13 +70,23 @@ std::vector<Vec3> section_of_ellipsoid(double a, double c, double depth, double 
 }  // namespace
 
 double clearance_of_base(const BodyShape& shape, double gap, double pitch) {
+    return gap + clearances_of_base(shape, {pitch}).front();
+}
+
+std::vector<double> clearances_of_base(const BodyShape& shape, const std::vector<double>& pitches) {
     BodyShape sharp = shape;  // an edge that is rounded all around takes long to find
     sharp.edge_radius = 0;
     const ExactBody body(sharp);
     const double slope = std::tan(shape.base_pitch);
-    double lowest = core::no_limit;
+    std::vector<double> lowest(pitches.size(), core::no_limit), up, forward;
+    for (const double pitch : pitches) {
+        up.push_back(std::cos(pitch));
+        forward.push_back(std::sin(pitch));
+    }
     const auto take = [&](double ahead, double above) {  // of the centre of the base, bent
-        lowest = std::min(lowest, gap + above * std::cos(pitch) + ahead * std::sin(pitch));
+        for (std::size_t i = 0; i < pitches.size(); ++i) {
+            lowest[i] = std::min(lowest[i], above * up[i] + ahead * forward[i]);
+        }
     };
     for (const bool front : {true, false}) {
         const double sign = front ? 1 : -1;

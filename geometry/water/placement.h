@@ -36,6 +36,8 @@ Clearance clearance(const SurfaceMesh& body, const Placement& placement);
 /// without a mesh, at a pitch and no roll; m, negative below the ground. Within 0.1 mm of `clearance` (which has no
 /// tail plate). The shape must have passed `check`.
 double clearance_of_base(const BodyShape& shape, double gap, double pitch);
+/// The same at several pitches (rad) at a gap of 0: add the gap. What they have in common is worked out once.
+std::vector<double> clearances_of_base(const BodyShape& shape, const std::vector<double>& pitches);
 
 /// The angles, about the centre of the base at a gap, at which the body first touches the ground; nothing when it does
 /// not within 60 degrees. rad.

@@ -44,11 +44,13 @@ std::optional<core::Problem> pitch_fault(const LoadsResult& loads, const std::st
 /// it: one in mm that was read in m.
 std::optional<core::Problem> reference_fault(const Field& field, const LoadsResult& loads, double limit);
 
-/// A warning where the highest pressure on a closed body, counted from the middle one, is not that of a flow of the
-/// speed and density of its coefficients, which comes to rest at 1/2 rho U^2: below a fifth, above six times (on zones
-/// that fit `base`, where there are no others, thirty times: a film over the ground). Whatever the pressure is relative
-/// to, with or without the weight of the water.
-std::optional<core::Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base);
+/// A warning where the highest pressure on a closed body, counted from the middle one, is not that of a flow of its
+/// speed and density, which comes to rest at 1/2 rho U^2: below a fifth, above six times (on zones that fit `base`,
+/// where there are no others, thirty times: a film over the ground). Whatever the pressure is relative to, with or
+/// without the weight of the water. Speed and density are those of its coefficients; where it has none, `speed` (m/s;
+/// NaN: not said, and there is no warning) in the field's density, or fresh water's where nobody states one.
+std::optional<core::Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base,
+                                        double speed = NAN);
 
 /// What was said of a case that its file is to bear out.
 struct Declared {
@@ -56,6 +58,7 @@ struct Declared {
     std::string base = "*base*";    ///< pattern of the zones of the flat base
     bool zones_named = false;       ///< the zones may be a part of the body
     bool driven = false;            ///< by jets: pressures do not follow from the speed
+    double speed = NAN;             ///< m/s; NaN: not said
 };
 /// All of the above of one case.
 core::Problems declared_faults(const Field& field, const LoadsResult& loads, const Declared& said);

@@ -87,12 +87,12 @@ void add_pressures(const Zone& zone, const Vector& up, double density, WallPress
 }
 
 /// Of the zones that were summed, but those that fit `without`.
-WallPressures pressures_of(const Field& field, const LoadsResult& loads, const std::string& without) {
+WallPressures pressures_of(const Field& field, const LoadsResult& loads, const std::string& without, double density) {
     WallPressures all;
     for (const auto& summed : loads.zones) {
         const Zone* zone = field.find(summed.name);
         if (zone != nullptr && zone->surface && !matches(without, summed.name)) {
-            add_pressures(*zone, loads.up, loads.coefficients->density, all);
+            add_pressures(*zone, loads.up, density, all);
         }
     }
     return all;
@@ -156,15 +156,18 @@ std::optional<Problem> reference_fault(const Field& field, const LoadsResult& lo
                    {loads.file, {}, {}, {}}};
 }
 
-std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base) {
-    if (!loads.coefficients || loads.closure > nearly_closed_within) {
+std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, const std::string& base, double said) {
+    const double speed = loads.coefficients ? loads.coefficients->speed : said;
+    if (!(speed > 0) || loads.closure > nearly_closed_within) {
         return {};
     }
-    const double density = loads.coefficients->density, speed = loads.coefficients->speed;
-    WallPressures wall = pressures_of(field, loads, base);
+    const bool fresh_water = !loads.coefficients && !field.density;
+    const double density =
+        loads.coefficients ? loads.coefficients->density : field.density.value_or(core::default_water_density);
+    WallPressures wall = pressures_of(field, loads, base, density);
     const bool apart = !wall.values.empty();
     if (!apart) {
-        wall = pressures_of(field, loads, "");
+        wall = pressures_of(field, loads, "", density);
     }
     constexpr std::size_t few = 20;
     if (wall.values.size() < few) {
@@ -184,8 +187,10 @@ std::optional<Problem> flow_fault(const Field& field, const LoadsResult& loads, 
     return Problem{Problem::Severity::warning,
                    "the highest pressure on the body lies " + core::format_number(highest, 4) +
                        " Pa over the middle one, but a flow of " + core::format_number(speed, 4) +
-                       " m/s comes to rest at 1/2 rho U^2 = " + core::format_number(stagnation, 4) +
-                       " Pa; such pressures are of about " +
+                       " m/s comes to rest at 1/2 rho U^2 = " + core::format_number(stagnation, 4) + " Pa" +
+                       (fresh_water ? " (in " + core::format_number(density) + " kg/m^3, since no density is given)"
+                                    : std::string()) +
+                       "; such pressures are of about " +
                        core::format_number(std::sqrt(2 * highest / usual / density), 2) +
                        " m/s: " + likely_flow_unit(highest / usual / stagnation),
                    {loads.file, {}, {}, {}}};
@@ -196,7 +201,7 @@ core::Problems declared_faults(const Field& field, const LoadsResult& loads, con
     core::Problems all;
     for (const auto& fault : {gap_fault(field, loads, said.gap, said.pitch), pitch_fault(loads, said.base, said.pitch),
                               reference_fault(field, loads, said.zones_named ? far_of_some_zones : far),
-                              said.driven ? std::nullopt : flow_fault(field, loads, said.base)}) {
+                              said.driven ? std::nullopt : flow_fault(field, loads, said.base, said.speed)}) {
         if (fault) {
             all.push_back(*fault);
         }

@@ -485,7 +485,8 @@ postproc::LoadsCase case_of(Shell& shell, const LoadsArguments& given, const Con
     const core::Problems faults =
         postproc::declared_faults(field, one.loads,
                                   {condition_of(file, "gap").value_or(NAN), condition_of(file, "pitch").value_or(NAN),
-                                   options.base, !options.zones.empty(), driven("jet_flow") || driven("jet_voltage")});
+                                   options.base, !options.zones.empty(), driven("jet_flow") || driven("jet_voltage"),
+                                   condition_of(file, "speed").value_or(NAN)});
     one.loads.problems.insert(one.loads.problems.end(), faults.begin(), faults.end());
     std::erase_if(one.numbers, [](const auto& entry) {
         return entry.first == "reference_x" || entry.first == "reference_y" || entry.first == "reference_z" ||

@@ -21,6 +21,8 @@
 #include "surrogates/discovery/wording.h"
 #include "surrogates/dynamics/logs/growing.h"
 #include "surrogates/dynamics/model/measurement_setup.h"
+#include "surrogates/dynamics/plant/contact_gap.h"
+#include "surrogates/dynamics/simulate/clean_readings.h"
 
 namespace underbody::studio {
 
@@ -108,6 +110,8 @@ public:
              : alarms_ == 0 ? "nothing changed: the gap followed the model as it did while the noise was learned "
                               "(what was wrong from the beginning is no change: predict and discover)"
                             : alarms);
+        const std::size_t outside = watch_->outside();
+        text += outside > 0 ? "; " + core::counted(outside, "reading") + " outside the tables of the model" : "";
         text += pitch_too_ ? "; the pitch was taken as measured, whether it follows the model is not watched" : "";
         if (passed_over > 0) {
             text += "; " + core::counted(passed_over, "reading") + " whose time did not ascend " +
@@ -126,6 +130,7 @@ public:
              {"readings", readings},
              {"judged", watched},
              {"not_judged", open},
+             {"outside_tables", outside},
              {"passed_over", passed_over},
              {"alarms", alarms_},
              {"cancelled", cancelled},
@@ -165,6 +170,13 @@ private:
     void gap(double time, double value) {
         const auto alarm = watch_->gap(time, value);
         follow_clock(time);
+        if (const auto& doubt = watch_->doubt()) {
+            throw core::InputError("log", doubt->text, {arguments_.log, {}, {}, {}}, doubt->hint);
+        }
+        if (!outside_told_ && watch_->outside() >= enough_outside) {
+            outside_told_ = true;
+            say_outside();
+        }
         if (!told_ && watch_->learned()) {
             told_ = true;
             block_ = watch_->block();
@@ -183,22 +195,36 @@ private:
         if (search_ && search_->ready()) {
             say_cause(search_->wait(shell_.progress()));
         }
-        if (alarm && !alarm_ && !search_ && !(own_time_ < silent_until_)) {
-            ++alarms_;
+        if (alarm && alarm->sensor) {
+            say_alarm(*alarm, alarm->shows + ", since " + seconds(alarm->since) + "; not judged until it moves again");
+        } else if (alarm && !alarm_ && !search_ && !(own_time_ < silent_until_)) {
             alarm_ = alarm;
             search_at_ = own_time_ + after_;
             look_again_ = 2 * after_;
-            say({{"event", "alarm"},
-                 {"time", alarm->time},
-                 {"since", alarm->since},
-                 {"shows", alarm->shows},
-                 {"force", alarm->force}},
-                seconds(alarm->time) + ": the vehicle is no longer the model, since about " + seconds(alarm->since) +
-                    "; what shows is " + alarm->shows);
+            say_alarm(*alarm, "the vehicle is no longer the model, since about " + seconds(alarm->since) +
+                                  "; what shows is " + alarm->shows);
         }
         if (alarm_ && own_time_ >= search_at_) {
             look_for_cause();
         }
+    }
+
+    void say_alarm(const discovery::WatchAlarm& alarm, const std::string& text) {
+        ++alarms_;
+        say({{"event", "alarm"},
+             {"time", alarm.time},
+             {"since", alarm.since},
+             {"shows", alarm.shows},
+             {"sensor", alarm.sensor},
+             {"force", alarm.force}},
+            seconds(alarm.time) + ": " + text);
+    }
+
+    void say_outside() {
+        const std::string range = dynamics::range_text(dynamics::lift_gap_range(model_));
+        say({{"event", "outside_tables"}, {"time", last_}, {"tables", range}},
+            seconds(last_) + ": the gap lies outside the tables of the model " + range +
+                ", where nothing is known of the force: such readings are not judged");
     }
 
     void say_learned() {
@@ -383,8 +409,9 @@ private:
     std::unique_ptr<CauseSearch> search_;
     nlohmann::json events_ = nlohmann::json::array();
     std::size_t alarms_ = 0;
-    bool told_ = false, fault_told_ = false;
-    double block_ = 0;  ///< s, as it was said last
+    bool told_ = false, fault_told_ = false, outside_told_ = false;
+    static constexpr std::size_t enough_outside = 20;  ///< readings
+    double block_ = 0;                                 ///< s, as it was said last
 };
 
 /// Readings as they come go to the watch.

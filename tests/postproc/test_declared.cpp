@@ -200,6 +200,24 @@ TEST(DeclaredSpeed, IsHeldAgainstTheHighestPressure) {
     EXPECT_THAT(told(stagnation, 500), HasSubstr("is the speed in mm/s, and was read in m/s?"));
 }
 
+// Without a density there are no coefficients: a speed wrong by a thousand passed unseen.
+TEST(DeclaredSpeed, IsHeldAgainstTheHighestPressureInFreshWaterWhereNobodyStatesADensity) {
+    const auto told = [](double pascal, double speed, std::optional<double> density) {
+        Field field;
+        LoadsResult loads = in_a_stream(field, pascal, 0.5);
+        loads.coefficients.reset();
+        field.density = density;
+        const auto fault = flow_fault(field, loads, "*base*", speed);
+        return fault ? fault->message : "";
+    };
+    constexpr double stagnation = 124.75;  // Pa, at 0.5 m/s
+    EXPECT_EQ(told(stagnation, 0.5, {}), "");
+    EXPECT_EQ(told(stagnation, NAN, {}), "") << "nobody said a speed";
+    EXPECT_THAT(told(stagnation, 500, {}), AllOf(HasSubstr("(in 998 kg/m^3, since no density is given)"),
+                                                 HasSubstr("is the speed in mm/s, and was read in m/s?")));
+    EXPECT_EQ(told(1.2 / 998 * stagnation, 0.5, 1.2), "") << "the file's own density";
+}
+
 TEST(DeclaredReference, FarFromTheBodyIsToldWithTheLikelyUnit) {
     Field field;
     LoadsResult loads = in_a_stream(field, 100, 0.5);

@@ -198,6 +198,40 @@ TEST(WatchCommand, CtrlCEndsItWithASummary) {
     EXPECT_THAT(run.output, HasSubstr("nothing changed: the gap followed the model"));
 }
 
+// A log in mm was watched, with a noise of 4.9 m and a force of 230 N; a sensor that stood still was a force, looked
+// for.
+TEST(WatchCommand, SaysOfALogThatItIsNotTheModelsAndOfASensorThatItStandsStill) {
+    const core::TemporaryFolder folder;
+    core::write_file(folder.path() / "model.toml", rig_model);
+    std::string csv = changed_rig(90);
+    csv.replace(csv.find("[mm]"), 4, "[m]");
+    core::write_file(folder.path() / "run.csv", csv);
+    const ProgramRun in_mm = run_underbody({"watch", "model.toml", "run.csv"}, folder.path());
+    EXPECT_EQ(in_mm.exit_code, 3) << in_mm.output;
+    EXPECT_THAT(in_mm.errors, HasSubstr("this log is not the model's"));
+    EXPECT_THAT(in_mm.errors, HasSubstr("is the column's unit mm, and was it read in m?"));
+
+    WatchedRig rig(21);
+    csv = "time [s], gap [m], input_force [N]\n";
+    double stuck = 0;
+    while (rig.time < 400) {
+        rig.advance();
+        stuck = rig.time < 200 ? rig.reading : stuck;
+        csv += core::format_number(rig.time) + ", " + core::format_number(stuck, 9) + ", " +
+               core::format_number(rig.input) + "\n";
+    }
+    core::write_file(folder.path() / "run.csv", csv);
+    const ProgramRun still = run_underbody({"watch", "model.toml", "run.csv", "--json"}, folder.path());
+    EXPECT_EQ(still.exit_code, 4) << still.errors;
+    const std::vector<json> events = lines_of(still.output);
+    ASSERT_EQ(events.size(), 3U) << still.output;
+    EXPECT_EQ(events[1]["event"], "alarm");
+    EXPECT_EQ(events[1]["sensor"], true);
+    EXPECT_LT(events[1]["time"].get<double>(), 201);
+    EXPECT_THAT(events[1]["shows"].get<std::string>(), HasSubstr("the gap stands still at"));
+    EXPECT_EQ(events[2]["alarms"], 1);
+}
+
 TEST(WatchCommand, NeedsAGap) {
     const core::TemporaryFolder folder;
     core::write_file(folder.path() / "model.toml", rig_model);

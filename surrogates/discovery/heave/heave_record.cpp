@@ -14,6 +14,7 @@
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/doubtful_clock.h"
+#include "surrogates/dynamics/simulate/doubtful_readings.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
@@ -68,22 +69,6 @@ void read_input(const dynamics::MeasuredRun& run, const dynamics::RecordReading&
             record.raw_input.push_back(values.empty() || !std::isfinite(values[i]) ? 0 : values[i]);
         }
     }
-}
-
-bool stuck(const std::vector<double>& values) {
-    std::size_t same = 0;
-    std::size_t longest = 0;
-    std::size_t readings = 0;
-    double last = std::nan("");
-    for (const double value : values) {
-        if (std::isfinite(value)) {  // rows of other sensors stand between the readings
-            same = value == last ? same + 1 : 0;
-            longest = std::max(longest, same);
-            last = value;
-            ++readings;
-        }
-    }
-    return readings > 20 && longest > readings / 5;
 }
 
 void average(const std::vector<double>& time, const std::vector<double>& values,
@@ -215,60 +200,6 @@ dynamics::GapRange tables_of(const dynamics::HeavePlant& plant) {
     return {plant.terms.table_lower, plant.terms.table_upper};
 }
 
-/// What gaps that lie outside the tables would be inside as: the question that the whole data set is asked.
-struct Misread {
-    const char* text = "";  ///< ": a thousandth would fit"
-    const char* hint = "";
-};
-
-double share_outside(const std::vector<double>& gaps, double factor, double lower, double upper) {
-    const auto out =
-        std::count_if(gaps.begin(), gaps.end(), [&](double x) { return factor * x < lower || factor * x > upper; });
-    return static_cast<double>(out) / static_cast<double>(gaps.size());
-}
-
-/// Only what fits as it stands, and far from fitting as it was read: a gap of 1.69 m beside tables to 1.6 m is none in
-/// mm, and one below the ground none in m.
-Misread misread(const std::vector<double>& gaps, double lower, double upper) {
-    constexpr double most = 0.1, far = 3;
-    const double middle = median(gaps);
-    const auto fits = [&](double factor) { return share_outside(gaps, factor, lower, upper) < most; };
-    if (middle > far * upper && fits(1e-3)) {
-        return {": a thousandth would fit", "is the column's unit mm, and was it read in m?"};
-    }
-    if (middle > 0 && far * middle < lower && fits(1e3)) {
-        return {": a thousandfold would fit", "is the column's unit m, and was it read in mm?"};
-    }
-    if (middle < 0 && fits(-1)) {
-        return {": with the other sign it would fit",
-                "gap counts upward from the ground; a depth or a z down is turned by sign = -1 in [log.channel.gap]"};
-    }
-    return {};
-}
-
-/// Why the declared model cannot run this run; empty where it can.
-std::string cannot_run(const std::vector<double>& gap, const dynamics::HeavePlant& plant, std::string& hint) {
-    const double lower = plant.terms.table_lower;
-    const double upper = plant.terms.table_upper;
-    if (lower < -1e299 || upper > 1e299) {
-        return "";
-    }
-    std::vector<double> finite;
-    std::copy_if(gap.begin(), gap.end(), std::back_inserter(finite), [](double x) { return std::isfinite(x); });
-    const double middle = median(finite), margin = 0.05 * (upper - lower);
-    const double outside = share_outside(finite, 1, lower, upper);
-    const bool beyond = !(middle > lower - margin && middle < upper + margin);
-    if (!beyond && !(outside > 0.5)) {
-        return "";
-    }
-    const Misread likely = misread(finite, lower, upper);
-    hint = likely.hint;
-    const std::string where = dynamics::range_text(tables_of(plant));
-    return (beyond ? "its gap, " + core::format_number(middle, 4) + " m in the middle, lies"
-                   : "it spends " + core::format_number(100 * outside, 3) + " % of its time") +
-           " outside the tables of the declared model " + where + likely.text;
-}
-
 /// Leaves the longest stretch inside the tables: a body that came back from beyond them would be given an effect for
 /// what the tables lack. What it is told of that; empty where all of it lies inside.
 std::string keep_inside_tables(HeaveRecord& record, double noise) {
@@ -284,43 +215,6 @@ std::string keep_inside_tables(HeaveRecord& record, double noise) {
         }
     }
     return dynamics::unused_text(record.name, inside, tables_of(*record.plant), record.time);
-}
-
-/// What the measured velocity says beside the gap's own changes over a second each; both NaN without enough motion.
-struct VelocityScale {
-    double slope = std::nan("");  ///< regression: a foreign channel gives about 0, a turned one -1
-    double ratio = std::nan("");  ///< root of the mean squares' ratio: a delay of one sensor leaves it at 1
-};
-
-VelocityScale velocity_scale(const HeaveRecord& record, double gap_noise) {
-    double cross = 0;
-    double by_velocity = 0;
-    double by_gap = 0;
-    constexpr double window = 1;  // s: short beside a run, long enough that the noise of the gap hardly counts
-    for (std::size_t begin = 0, end = 1; end < record.time.size(); ++end) {
-        const double lasted = record.time[end] - record.time[begin];
-        if (lasted < window) {
-            continue;
-        }
-        double sum = 0;
-        double weights = 0;
-        for (std::size_t i = begin; i <= end; ++i) {
-            if (std::isfinite(record.velocity[i])) {
-                const double weight = i == begin || i == end ? 0.5 : 1;
-                sum += weight * record.velocity[i];
-                weights += weight;
-            }
-        }
-        const double change = record.gap[end] - record.gap[begin];
-        if (std::isfinite(change) && weights > 0.5 * static_cast<double>(end - begin)) {
-            const double path = lasted * sum / weights;
-            cross += change * path;
-            by_velocity += path * path;
-            by_gap += change * change - 2 * gap_noise * gap_noise;
-        }
-        begin = end;
-    }
-    return by_gap > 0 ? VelocityScale{cross / by_gap, std::sqrt(by_velocity / by_gap)} : VelocityScale{};
 }
 
 /// A run that can be used, and what it says of the whole set: nothing of one that is left out counts there.
@@ -421,46 +315,20 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
     if (!result.velocity_measured) {
         return;
     }
-    std::vector<double> slopes;
-    std::vector<double> ratios;
+    std::vector<dynamics::VelocityScale> scales;
     for (const HeaveRecord& record : result.records) {
-        const VelocityScale scale =
-            record.velocity.empty() ? VelocityScale{} : velocity_scale(record, result.gap_noise);
-        if (std::isfinite(scale.slope)) {
-            slopes.push_back(scale.slope);
-            ratios.push_back(scale.ratio);
+        if (!record.velocity.empty()) {
+            scales.push_back(dynamics::velocity_scale(record.time, record.gap, record.velocity, result.gap_noise));
         }
     }
-    const double slope = slopes.empty() ? 1 : median(slopes);
-    const double ratio = ratios.empty() ? 1 : median(ratios);
-    std::vector<double> apart;
-    for (const double one : ratios) {
-        apart.push_back(std::abs(one - ratio));
-    }
-    // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
-    const double tolerance =
-        ratios.size() < 3
-            ? 0.25
-            : std::max(0.05, 5 * 1.25 * 1.4826 * median(apart) / std::sqrt(static_cast<double>(ratios.size())));
-    std::string text;
-    if (slope < -0.5 && slope > -2) {
-        text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";
-    } else if (std::abs(slope) < 0.5 || std::abs(slope) > 2) {
-        const bool thousand = (slope > 500 && slope < 2000) || (slope > 5e-4 && slope < 2e-3);
-        text = "heave_velocity is " + core::format_number(slope, 3) + " times what the gap's changes say" +
-               (thousand ? ": a unit wrong by a thousand?" : ": another channel, another run, or swapped columns?") +
-               " It is not used";
-    } else if (std::abs(ratio - 1) > tolerance) {
-        text = "heave_velocity is " + core::format_number(ratio, 3) +
-               " times what the gap's changes say: is the scale of one of the two wrong? It is not used";
-    }
-    if (text.empty()) {
+    const auto doubt = dynamics::doubtful_velocity(scales);
+    if (!doubt) {
         return;
     }
-    remark(result.problems, text, data.folder.string());
-    const bool turn = slope < -0.5 && slope > -2;
+    remark(result.problems, doubt->text + (doubt->turned ? ": it is turned round)" : " It is not used"),
+           data.folder.string());
     for (HeaveRecord& record : result.records) {
-        if (turn) {
+        if (doubt->turned) {
             for (double& value : record.velocity) {
                 value = -value;
             }
@@ -469,8 +337,8 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
             record.velocity_share.clear();
         }
     }
-    result.velocity_measured = turn;
-    result.velocity_turned = turn;
+    result.velocity_measured = doubt->turned;
+    result.velocity_turned = doubt->turned;
 }
 
 /// What is learned while the runs are read, one after the other.
@@ -505,22 +373,19 @@ bool read_gap(Reading& reading, const dynamics::MeasuredRun& run, std::vector<do
     if (saturated > 0) {
         remark(used.said, dynamics::saturated_text(run.name, saturated), file);
     }
-    if (stuck(gap) || 2 * saturated > gap.size()) {
-        remark(problems,
-               "the gap of " + run.name + " stands still for a fifth of the run: a stuck sensor? the run is left out",
-               file);
+    if (dynamics::stands_still(gap) || 2 * saturated > gap.size()) {
+        remark(problems, dynamics::still_text(run.name) + " the run is left out", file);
         ++reading.still;
         return false;
     }
-    const std::string reason = cannot_run(gap, *used.record.plant, reading.unit);
-    if (!reason.empty()) {
-        remark(problems, run.name + " is left out: " + reason, file);
+    if (const auto beside = dynamics::beside_tables(gap, tables_of(*used.record.plant))) {
+        reading.unit = beside->hint;
+        remark(problems, run.name + " is left out: " + beside->text, file);
         return false;
     }
     const std::vector<double> pushed = run.values("input_force");
     const double input_noise = pushed.size() == gap.size() ? dynamics::sensor_noise(time, pushed) : 0;
-    const std::optional<double> declared = reading.data.declared_noise("gap");
-    if (declared && noise < 0.05 * *declared && input_noise > 0.5 * *declared && input_noise < 2 * *declared) {
+    if (dynamics::look_exchanged(noise, input_noise, reading.data.declared_noise("gap"))) {
         remark(
             problems,
             run.name +
@@ -565,7 +430,7 @@ void read_velocity(const Reading& reading, const dynamics::MeasuredRun& run, con
     const std::vector<double>& time = run.table.numbers("time");
     std::vector<double> values = dynamics::as_read(run, "heave_velocity", reading.model.records);
     const double own = dynamics::sensor_noise(time, values);
-    if (stuck(values) || !std::isfinite(own)) {
+    if (dynamics::stands_still(values) || !std::isfinite(own)) {
         remark(used.said,
                "heave_velocity of " + run.name + " stands still for a fifth of the run or is missing: it is not used",
                run.table.source);

@@ -302,7 +302,7 @@ void MotionLoop::guard() {
             warn(chosen.hypothesis.label() +
                  " would explain the fitted runs better, but the held-out error does not fall with it beyond its "
                  "interval: it is not named");
-            cap_probabilities(attribution_, 0.5);
+            hold_names_down(attribution_, 0.5);
             result_.verdict = "none";
             look_run_by_run();  // nothing is left that all runs have in common
         } else {

@@ -139,7 +139,7 @@ void StaticLoop::guard() {
         if (!falls(nullptr, chosen)) {
             uses_.clear();
             result_.verdict = "none";
-            cap_probabilities(attribution_, calibration_.left_undecided);
+            hold_names_down(attribution_, calibration_.left_undecided);
             result_.problems.push_back(
                 {core::Problem::Severity::warning,
                  chosen.hypothesis.label() +

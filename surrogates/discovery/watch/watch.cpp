@@ -4,12 +4,16 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "core/no_limit.h"
+#include "core/told.h"
+#include "surrogates/discovery/watch/still_reading.h"
 #include "surrogates/discovery/watch/watch_fault.h"
 #include "surrogates/discovery/watch/watch_scores.h"
+#include "surrogates/dynamics/simulate/doubtful_readings.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
@@ -35,6 +39,9 @@ constexpr double silence = 1;               ///< s without a reading: nothing is
 constexpr double input_late = 1.5;          ///< usual steps without an input: another one may have acted
 constexpr double own_input_memory = 500;    ///< readings
 constexpr double own_input_usual = 0.8;     ///< share of readings with an input of their own: one without lost it
+constexpr double first_look = 1;            ///< s of readings, and ...
+constexpr std::size_t first_readings = 20;  ///< ... so many, by which gaps are held against the tables
+constexpr double off_tables = 6;            ///< noises of a reading: so near to a table it is inside
 
 const char* words(std::size_t direction) {
     constexpr const char* all[watch_directions] = {
@@ -192,7 +199,15 @@ struct Watch::Parts {
         last_time = time;
         ++count_in_step;
         sum_time += time;
+        if (still.take(time, value)) {
+            alarm = stands_still(still, time, "gap", "m");
+        } else if (pending_alarm) {
+            alarm = std::exchange(pending_alarm, std::nullopt);
+        }
         if (std::isfinite(value)) {
+            no_use = still.still() || !inside(value);
+        }
+        if (std::isfinite(value) && !no_use) {
             sum_gap += value;
             gaps += 1;
         }
@@ -203,7 +218,39 @@ struct Watch::Parts {
                 raw_time.clear();
                 raw_gap.clear();
             }
+            if (!looked && raw_time.size() >= first_readings && raw_time.back() - raw_time.front() >= first_look) {
+                looked = true;
+                const auto beside = dynamics::beside_tables(raw_gap, tables());
+                if (beside && !beside->hint.empty()) {
+                    doubt = WatchDoubt{"this log is not the model's: " + beside->text, beside->hint};
+                }
+            }
         }
+        return alarm;
+    }
+
+    [[nodiscard]] dynamics::GapRange tables() const { return {plant->terms.table_lower, plant->terms.table_upper}; }
+
+    bool inside(double value) {
+        const auto declared = options.noise.find("gap");
+        const double sigma = noise                             ? std::hypot(noise->noise.gap, noise->noise.slow)
+                             : declared != options.noise.end() ? declared->second
+                                                               : dynamics::usual_gap_noise;
+        const dynamics::GapRange range = tables();
+        const bool in = value > range.lower - off_tables * sigma && value < range.upper + off_tables * sigma;
+        outside += in ? 0 : 1;
+        return in;
+    }
+
+    static WatchAlarm stands_still(const StillReading& still, double time, const std::string& channel,
+                                   const std::string& unit) {
+        WatchAlarm alarm;
+        alarm.time = time;
+        alarm.since = still.since();
+        alarm.sensor = true;
+        alarm.shows = "the " + channel + " stands still at " + core::told(still.value(), unit, 6) + ": " +
+                      std::to_string(still.alike()) + " readings alike" +
+                      (still.ever_changed() ? ", which its noise does not make: its sensor" : ", all that there are");
         return alarm;
     }
 
@@ -248,7 +295,7 @@ struct Watch::Parts {
     }
 
     void keep(const WatchStep& step) {
-        watched += steps.empty() ? 0 : std::min(step.time - steps.back().time, silence);
+        watched += steps.empty() || (no_use && !scores) ? 0 : std::min(step.time - steps.back().time, silence);
         steps.push_back(step);
         while (steps.back().time - steps.front().time > options.remember || steps.size() > most_steps) {
             steps.pop_front();
@@ -313,6 +360,9 @@ struct Watch::Parts {
         while (recent.back().time - recent.front().time > longest_learned) {
             recent.pop_front();
         }
+        if (!noise) {
+            doubt = doubt ? doubt : doubtful_log(plant, recent);
+        }
         noise = learn_noise(plant, recent, begin);
         if (!fault) {
             const auto declared = options.noise.find("gap");
@@ -370,8 +420,11 @@ struct Watch::Parts {
         const auto passed = scores->take(step.time, seen, true);
         WatchAlarm alarm;
         alarm.time = step.time;
-        constexpr double long_block = 2;  // s: shorter ones say as soon what it is
-        if (residuals->jumped() && scores->block() > long_block) {
+        constexpr double long_block = 2, soon = 1, not_soon = 4;  // s: short ones say as soon what it is, mostly
+        const bool beyond = residuals->beyond(scores->block() > long_block ? soon : not_soon);
+        const bool jumped = beyond && !jump_told;
+        jump_told = beyond;
+        if (jumped && !passed) {
             alarm.since = residuals->beyond_since();
             alarm.shows = "a jump of the gap, or a large force";
             return alarm;
@@ -399,6 +452,12 @@ struct Watch::Parts {
     std::map<std::vector<double>, Plants> plants;
     std::optional<WatchNoise> noise;
     std::optional<WatchFault> fault;
+    std::optional<WatchDoubt> doubt;
+    bool no_use = false;     ///< the last reading: of a sensor that stands still, or outside the tables
+    bool looked = false;     ///< whether the gaps are those of the tables
+    bool jump_told = false;  ///< the one that lasts
+    StillReading still, still_velocity;
+    std::optional<WatchAlarm> pending_alarm;  ///< told with the next reading of the gap
     std::unique_ptr<WatchResiduals> residuals;
     std::unique_ptr<WatchScores> scores;
     double next_learn, watched = 0;
@@ -408,7 +467,7 @@ struct Watch::Parts {
     double largest_change = 0;  ///< N, of the input from one to the next, lately
     double own_input = 0;       ///< share of the readings that have an input of their own, lately
     std::deque<WatchStep> steps;
-    std::size_t count = 0, count_in_step = 0, passed_over = 0, backwards = 0;
+    std::size_t count = 0, count_in_step = 0, passed_over = 0, backwards = 0, outside = 0;
     double last_time = 0, step_begin = 0, sum_time = 0, sum_gap = 0, gaps = 0, usual_step = 0;
     std::deque<std::pair<double, double>> pending;  ///< velocities whose step is not complete
 };
@@ -453,13 +512,20 @@ void Watch::velocity(double time, double value) {
         if (parts_->pending.size() > most_waiting) {
             parts_->pending.pop_front();  // a log with velocities and no gap
         }
-        parts_->pending.emplace_back(time, value * parts_->model.records.velocity_factor);
+        if (parts_->still_velocity.take(time, value)) {
+            parts_->pending_alarm = Parts::stands_still(parts_->still_velocity, time, "heave velocity", "m/s");
+        }
+        if (!parts_->still_velocity.still()) {
+            parts_->pending.emplace_back(time, value * parts_->model.records.velocity_factor);
+        }
     }
 }
 
 std::optional<WatchAlarm> Watch::gap(double time, double value) { return parts_->add_gap(time, value); }
 bool Watch::learned() const { return parts_->scores != nullptr; }
 const std::optional<WatchFault>& Watch::fault() const { return parts_->fault; }
+const std::optional<WatchDoubt>& Watch::doubt() const { return parts_->doubt; }
+std::size_t Watch::outside() const { return parts_->outside; }
 std::size_t Watch::readings() const { return parts_->count; }
 std::size_t Watch::passed_over() const { return parts_->passed_over; }
 double Watch::noise() const {

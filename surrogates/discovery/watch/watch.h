@@ -31,6 +31,15 @@ struct WatchAlarm {
     /// the gap, or a large force" within a second, where blocks are longer than two.
     std::string shows;
     double force = 0;  ///< N, mean of a constant force where that shows best, else 0
+    /// It is a sensor that stands still, not the vehicle: `shows` says which and where. Its readings are none until it
+    /// moves again.
+    bool sensor = false;
+};
+
+/// A log that is not what it is called, or not of this model: in other units, with columns exchanged or turned.
+struct WatchDoubt {
+    std::string text;
+    std::string hint;  ///< what to do
 };
 
 /// What the readings say that noise was learned from, where the vehicle was not its model from the first one.
@@ -51,7 +60,8 @@ struct WatchFault {
 /// The model runs beside the vehicle as an extended Kalman filter. Residuals of the readings are scored along five
 /// directions (forces that may be missing) and for their scatter, in blocks that are long against the colour of the
 /// noise; each score is made standard normal by those before it (Hawkins 1987) and summed up (Page 1954) to thresholds
-/// that give the stated rate (Siegmund 1985), shared equally among all tests.
+/// that give the stated rate (Siegmund 1985), shared equally among all tests. Readings outside the model's tables are
+/// none: nothing is known of the force there.
 class Watch {
 public:
     /// Throws core::InputError as HeavePlant does; core::UsageError for a rate or a time that is not positive.
@@ -72,7 +82,10 @@ public:
     [[nodiscard]] bool learned() const;
     /// What was wrong from the beginning, as far as it shows; asked each time that noise is learned.
     [[nodiscard]] const std::optional<WatchFault>& fault() const;
+    /// A log that this model cannot be watched on; asked after a second, and when noise is first learned.
+    [[nodiscard]] const std::optional<WatchDoubt>& doubt() const;
     [[nodiscard]] std::size_t readings() const;
+    [[nodiscard]] std::size_t outside() const;      ///< readings that lay outside the model's tables
     [[nodiscard]] std::size_t passed_over() const;  ///< readings whose time did not ascend
     /// m, standard deviation of a gap reading, averaged over a step where it is faster; 0 before it is known.
     [[nodiscard]] double noise() const;

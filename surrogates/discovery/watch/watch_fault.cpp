@@ -4,7 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "core/no_limit.h"
+#include "core/text.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/simulate/input_as_logged.h"
 
 namespace underbody::discovery {
 
@@ -88,9 +91,102 @@ std::deque<WatchStep> with_force(std::deque<WatchStep> steps, const std::vector<
     return steps;
 }
 
+/// What a model that is taken at its word is wrong by in the next reading, over how far the gap moves: 1 and more where
+/// it says nothing of the motion.
+double misfit(const WatchPlant& plant, const std::deque<WatchStep>& steps) {
+    constexpr double sure = 0.02;        // noise of a reading, of how far the gap moves
+    constexpr std::size_t settled = 50;  // readings by which the state is known
+    double sum = 0, squares = 0, count = 0;
+    for (const WatchStep& step : steps) {
+        if (std::isfinite(step.gap)) {
+            sum += step.gap;
+            squares += step.gap * step.gap;
+            ++count;
+        }
+    }
+    const double spread = count > 0 ? std::sqrt(std::max(0.0, squares / count - sum * sum / count / count)) : 0;
+    if (!(spread > 0)) {
+        return 0;
+    }
+    HeaveNoise noise;
+    noise.gap = sure * spread;
+    noise.slow = 0;
+    noise.process = still;
+    WatchFilter filter(plant, noise);
+    bool begun = false;
+    double wrong = 0, readings = 0;
+    for (const WatchStep& step : steps) {
+        if (!begun && std::isfinite(step.gap)) {
+            filter.restart(step.time, step.gap);
+            begun = true;
+        } else if (begun) {
+            filter.advance(step);
+            if (std::isfinite(step.gap)) {
+                const WatchInnovation seen = filter.gap_innovation(step);
+                filter.absorb(seen, seen.normal);
+                wrong += ++readings > settled ? std::pow(seen.normal * seen.sigma, 2) : 0;
+            }
+        }
+    }
+    const double rms = readings > settled ? std::sqrt(wrong / (readings - settled)) / spread : 0;
+    return std::isfinite(rms) ? rms : core::no_limit;
+}
+
 double total(const WatchNoise& noise) { return std::hypot(noise.noise.gap, noise.noise.slow); }
 
 }  // namespace
+
+std::optional<WatchDoubt> doubtful_log(const WatchPlant& plant, const std::deque<WatchStep>& steps) {
+    constexpr double nothing = 0.5, fits = 0.1;  // of how far the gap moves
+    if (!(misfit(plant, steps) > nothing)) {
+        return {};
+    }
+    const bool pushed = std::any_of(steps.begin(), steps.end(),
+                                    [&](const WatchStep& step) { return step.command != steps.front().command; });
+    std::optional<WatchDoubt> found;
+    double least = fits;
+    const auto attempt = [&](const WatchDoubt& doubt, const std::deque<WatchStep>& read) {
+        const double own = misfit(plant, read);
+        if (own > 0 && own < least) {
+            least = own;
+            found = doubt;
+        }
+    };
+    for (const double factor : {1e-3, 1e3, -1.0}) {
+        std::deque<WatchStep> read = steps;
+        for (WatchStep& step : read) {
+            step.gap *= factor;
+        }
+        const std::string times = core::format_number(factor, 4);
+        attempt({"this log is not the model's: its motion fits a gap of " + times + " times the recorded one",
+                 factor == 1e-3  ? "is the column's unit mm, and was it read in m?"
+                 : factor == 1e3 ? "is the column's unit m, and was it read in mm?"
+                                 : "gap counts upward from the ground: turn its sign"},
+                read);
+        if (pushed) {
+            read = steps;
+            for (WatchStep& step : read) {
+                step.input *= factor;
+                step.command *= factor;
+            }
+            attempt({dynamics::doubt_text({0, factor, "input_force"}, {"input_force"}),
+                     "mend the column, or read it so: [records] input_force_factor = " + times + " in the model"},
+                    read);
+        }
+    }
+    if (pushed) {
+        // what is logged as input at a reading is the mean up to the next one
+        std::deque<WatchStep> read(steps.begin() + 1, steps.end() - 1);
+        for (std::size_t k = 0; k < read.size(); ++k) {
+            read[k].gap = steps[k + 2].command;
+            read[k].input = read[k].command = steps[k].gap;
+        }
+        attempt({"gap and input_force look exchanged: their motion fits the model with each in the other's place",
+                 "exchange the two names in the header line"},
+                read);
+    }
+    return found;
+}
 
 std::optional<WatchFault> fault_from_the_begin(const WatchPlant& plant, const std::deque<WatchStep>& steps,
                                                const WatchNoise& learned, std::optional<double> declared) {

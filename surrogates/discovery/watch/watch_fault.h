@@ -14,4 +14,8 @@ namespace underbody::discovery {
 std::optional<WatchFault> fault_from_the_begin(const WatchPlant& plant, const std::deque<WatchStep>& steps,
                                                const WatchNoise& learned, std::optional<double> declared);
 
+/// Where these steps are nothing that the model does, and with the gap or the input in another unit, turned round, or
+/// each in the other's place they are.
+std::optional<WatchDoubt> doubtful_log(const WatchPlant& plant, const std::deque<WatchStep>& steps);
+
 }  // namespace underbody::discovery

@@ -22,8 +22,8 @@ constexpr double longest_bridge = 3.5;   ///< usual steps whose input was lost t
 constexpr double silence = 1;            ///< s without a reading: the state is found anew
 constexpr double gate = 4.5;             ///< beyond it one reading is wild ...
 constexpr std::size_t most_wild = 4;     ///< ... and so many in a row are no accident
-constexpr double jump_lasts = 1;         ///< s of readings beyond the gate, and at least ...
-constexpr double jump_readings = 10;     ///< ... so many, that are no burst of wild ones
+constexpr double jump_readings = 10;     ///< in a row beyond the gate, that are no burst of wild ones
+constexpr double largest_kick = 5;       ///< deviations: more is not for what an input was that nobody logged
 constexpr double limit = 3;              ///< of what one reading may say
 constexpr double least_left = 0.02;      ///< one less the sum of a colour's coefficients
 constexpr double uneven = 1.5;           ///< of the usual step: the colour's past is not known then
@@ -104,11 +104,9 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
     const bool wild =
         std::abs(value) > gate && settling_ + first_steps <= settle_steps && ++sensor.rejected <= most_wild;
     if (index == 0) {
-        const bool settled = settling_ == 0 && unjudged_ == 0 && kick_.steps == 0;
-        beyond_ = settled && std::abs(value) > gate ? beyond_ + 1 : 0;
+        const double kicked = largest_kick * std::abs(innovation.kick - expected.kick) / colour.scale;
+        beyond_ = settling_ == 0 && std::abs(value) > gate + kicked ? beyond_ + 1 : 0;
         beyond_since_ = beyond_ == 1 ? *time_ : beyond_since_;
-        const double needed = std::max(jump_readings, usual_step_ > 0 ? std::ceil(jump_lasts / usual_step_) : 0.0);
-        jumped_ = static_cast<double>(beyond_) == needed;
     }
     WatchInnovation used = innovation;
     used.normal = wild ? expected.normal : expected.normal + colour.scale * std::clamp(value, -gate, gate);
@@ -162,6 +160,11 @@ void WatchResiduals::take_kick() {
     kick_ = {};
 }
 
+bool WatchResiduals::beyond(double seconds) const {
+    return static_cast<double>(beyond_) >=
+           std::max(jump_readings, usual_step_ > 0 ? std::ceil(seconds / usual_step_) : 0.0);
+}
+
 void WatchResiduals::restart(const WatchStep& step) {
     filter_.restart(step.time, step.gap);
     doubts_.restart();
@@ -177,10 +180,13 @@ void WatchResiduals::restart(const WatchStep& step) {
 /// Looks whether the state is another than was thought, before the reading is judged.
 WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
     const WatchInnovation innovation = filter_.gap_innovation(step);
-    const double size = std::abs(doubts_.with_errors(innovation, white(0)).normal) / sensors_[0].colour.scale;
+    const WatchInnovation with_errors = doubts_.with_errors(innovation, white(0));
+    const double size = std::abs(with_errors.normal) / sensors_[0].colour.scale,
+                 kicked = largest_kick * std::abs(with_errors.kick) / sensors_[0].colour.scale;
     const bool just_begun = settling_ + first_steps > settle_steps;
-    if (size > gate && restarts_ < most_restarts &&
-        (just_begun || (settling_ + unjudged_ > 0 && sensors_[0].rejected >= most_wild))) {
+    // what is beyond any lost input is no state that was found wrongly, but a jump
+    const bool unsure = settling_ > 0 || (unjudged_ > 0 && size <= gate + kicked);
+    if (size > gate && restarts_ < most_restarts && (just_begun || (unsure && sensors_[0].rejected >= most_wild))) {
         ++restarts_;
         restart(step);
         return filter_.gap_innovation(step);
@@ -189,9 +195,10 @@ WatchInnovation WatchResiduals::gap_innovation(const WatchStep& step) {
 }
 
 std::array<std::optional<WatchResidual>, 2> WatchResiduals::take(const WatchStep& step) {
-    jumped_ = false;
     const bool lost = step.unknown_input > 0 && step.unknown_for > longest_bridge * usual_step_;
-    if (!time_ || lost || step.time - *time_ > silence) {
+    const bool read = std::isfinite(step.gap), unread = read && last_gap_ && step.time - *last_gap_ > silence;
+    last_gap_ = read ? step.time : last_gap_;
+    if (!time_ || lost || unread || step.time - *time_ > silence) {
         if (!std::isfinite(step.gap)) {
             return {};
         }

@@ -72,9 +72,9 @@ public:
     /// A silence of more than a second makes the state unknown; a while after it nothing is judged.
     std::array<std::optional<WatchResidual>, 2> take(const WatchStep& step);
 
-    /// True once, with the last of so many readings of the gap in a row beyond what noise and accidents make (a second
-    /// and ten readings) that the vehicle, or its sensor, has jumped; not while a state is still found.
-    [[nodiscard]] bool jumped() const { return jumped_; }
+    /// True where the last readings of the gap, ten at least and for so many seconds, all lie beyond what noise,
+    /// accidents and a lost input make: the vehicle, or its sensor, has jumped; not while a state is still found.
+    [[nodiscard]] bool beyond(double seconds) const;
     /// s, of the first of these readings.
     [[nodiscard]] double beyond_since() const { return beyond_since_; }
 
@@ -101,12 +101,12 @@ private:
     WatchDoubts doubts_;
     std::array<Sensor, 2> sensors_;
     std::optional<double> time_;
+    std::optional<double> last_gap_;  ///< time of the last reading of it
     double usual_step_ = 0;
     std::size_t settling_ = 0, restarts_ = 0;
     std::size_t unjudged_ = 0;  ///< steps that a lost input may still show in
     std::size_t beyond_ = 0;    ///< readings of the gap in a row beyond the gate
     double beyond_since_ = 0;
-    bool jumped_ = false;
     /// An input that nobody logged: its size in deviations out of the readings since (Willsky and Jones 1976).
     struct Kick {
         std::size_t steps = 0;              ///< in which it may still show

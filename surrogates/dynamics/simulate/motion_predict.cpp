@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/horizon.h"
+#include "surrogates/dynamics/simulate/input_as_logged.h"
 
 namespace underbody::dynamics {
 
@@ -143,6 +144,14 @@ Prediction predict_motion_series(const Motion& motion, const Model& model, const
         });
     }
     remark_long_horizon(data, options, out);
+    const auto doubt = doubtful_input(data, motion.inputs(model), out.records, [&](const RecordReading& records) {
+        Model read = model;
+        read.records = records;
+        return errors_of(predict_motion_runs(motion, read, data, options, progress), states.size());
+    });
+    if (doubt) {
+        out.remarks.push_back(*doubt);
+    }
     std::vector<std::string> names;
     std::vector<double> number, time;
     std::vector<std::vector<double>> measured(states.size()), predicted(states.size());

@@ -19,7 +19,9 @@
 #include "surrogates/dynamics/simulate/clean_readings.h"
 #include "surrogates/dynamics/simulate/declared_noise.h"
 #include "surrogates/dynamics/simulate/doubtful_clock.h"
+#include "surrogates/dynamics/simulate/doubtful_readings.h"
 #include "surrogates/dynamics/simulate/horizon.h"
+#include "surrogates/dynamics/simulate/input_as_logged.h"
 #include "surrogates/dynamics/simulate/motion_predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
 #include "surrogates/dynamics/simulate/start_state.h"
@@ -299,24 +301,6 @@ double sum_of_squares(const std::vector<double>& values) {
     return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// How many independent errors hold as much as these: the errors of a model that is wrong are as smooth as the motion,
-/// and a second of them says no more than one. By the sum of their autocorrelation, up to its first zero.
-double independent_count(const std::vector<double>& errors) {
-    const double all = sum_of_squares(errors);
-    const std::size_t most = std::min<std::size_t>(errors.size() / 2, 2000);
-    double sum = 1;
-    for (std::size_t lag = 1; lag < most && all > 0; ++lag) {
-        const double rho =
-            std::inner_product(errors.begin() + static_cast<std::ptrdiff_t>(lag), errors.end(), errors.begin(), 0.0) /
-            all;
-        if (rho <= 0) {
-            break;
-        }
-        sum += 2 * rho;
-    }
-    return static_cast<double>(errors.size()) / sum;
-}
-
 SeriesPrediction predict_runs(const Model& model, const RecordReading& records, const Measurements& data,
                               const PredictOptions& options, core::Progress& progress) {
     SeriesPrediction all;
@@ -449,6 +433,26 @@ void remark_unused(const SeriesPrediction& all, const Model& model, const Measur
     }
 }
 
+/// What channels look like that are not what they are called, in the words of discovery.
+void doubt_logs(const Model& model, const Measurements& data, const PredictOptions& options, core::Progress& progress,
+                Prediction& out) {
+    const core::Problems channels = doubtful_readings(model, data);
+    out.remarks.insert(out.remarks.end(), channels.begin(), channels.end());
+    if (!channels.empty()) {
+        return;  // an input that is asked of such readings answers for them
+    }
+    std::vector<double> noise;
+    for (const MeasuredRun& run : data.runs) {
+        noise.push_back(channel_noise(data, run, "gap", 1e-4));
+    }
+    const auto doubt = doubtful_input(data, {"input_force"}, out.records, [&](const RecordReading& records) {
+        return predict_runs(model, records, data, options, progress).errors(noise);
+    });
+    if (doubt) {
+        out.remarks.push_back(*doubt);
+    }
+}
+
 Prediction predict_series(const Model& model, const Measurements& data, const PredictOptions& options,
                           core::Progress& progress) {
     if (const Motion* const motion = motion_of(model, data)) {
@@ -469,6 +473,7 @@ Prediction predict_series(const Model& model, const Measurements& data, const Pr
     out.records = reading.records;
     check_bounds(all, model, data, out);
     remark_unused(all, model, data, out);
+    doubt_logs(model, data, options, progress, out);
     std::vector<std::string> names;
     std::vector<double> window, time, gap, gap_predicted, velocity, velocity_predicted;
     ChannelScore gap_score, velocity_score;

@@ -16,8 +16,18 @@ namespace {
 
 using Function = std::function<double(std::span<const double>, std::span<double>)>;  // value and slopes in the cube
 
+/// A function as the optimiser calls it.
+struct Called {
+    const Function& function;
+    const core::Progress& progress;
+};
+
 double call(unsigned n, const double* u, double* slope, void* data) {
-    return (*static_cast<const Function*>(data))({u, n}, slope == nullptr ? std::span<double>() : std::span(slope, n));
+    const auto& [function, progress] = *static_cast<const Called*>(data);
+    if (progress.cancelled()) {
+        throw nlopt::forced_stop();  // who called looks at it
+    }
+    return function({u, n}, slope == nullptr ? std::span<double>() : std::span(slope, n));
 }
 
 /// Slopes by central differences, for what has no closed form.
@@ -43,16 +53,30 @@ std::size_t places_for(const SearchProblem& problem, double sigmas, std::size_t 
     return std::min(most, an_axis * problem.variables.size()) / (dear ? 8 : 1);
 }
 
+constexpr double of_places = 0.4;  ///< share of the time that goes into looking at places, about
+
+/// What is done of a part of the work, which lasts from one share of it to the other.
+void say_step(core::Progress& progress, double from, double to, const char* what, std::size_t done, std::size_t all) {
+    progress.check();
+    progress.report(from + (to - from) * static_cast<double>(done) / static_cast<double>(all),
+                    std::string(what) + ": " + std::to_string(done) + " of " + std::to_string(all));
+}
+
 /// Best point from a start; the start itself where no step could be made.
-std::vector<double> polished(const Function& objective, const std::vector<Function>& limits, std::vector<double> u) {
+std::vector<double> polished(const Function& objective, const std::vector<Function>& limits, std::vector<double> u,
+                             const core::Progress& progress) {
     nlopt::opt search(nlopt::LD_SLSQP, static_cast<unsigned>(u.size()));
     search.set_lower_bounds(0.0);
     search.set_upper_bounds(1.0);
     search.set_maxeval(100);
     search.set_xtol_abs(1e-7);
-    search.set_min_objective(call, const_cast<Function*>(&objective));
+    Called aim{objective, progress};
+    search.set_min_objective(call, &aim);
+    std::vector<Called> bounds;
+    bounds.reserve(limits.size());
     for (const Function& limit : limits) {
-        search.add_inequality_constraint(call, const_cast<Function*>(&limit), 1e-8);
+        bounds.push_back({limit, progress});
+        search.add_inequality_constraint(call, &bounds.back(), 1e-8);
     }
     std::vector<double> end = u;
     double value = 0;
@@ -193,7 +217,9 @@ std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed
     const std::size_t axes = problem_.variables.size();
     const OnTheCube cube(*this, sigmas);
     std::vector<std::pair<double, std::vector<double>>> tried;
-    for (std::vector<double>& u : sobol_plan(places_for(problem_, sigmas, 250, 2000), axes, seed)) {
+    Plan places = sobol_plan(places_for(problem_, sigmas, 250, 2000), axes, seed);
+    for (std::vector<double>& u : places) {
+        say_step(progress, 0, of_places, "designs looked at", tried.size(), places.size());
         // Starts that break a limit come after those that do not.
         const double value = cube.objectives.front()(u, {}) + 1e3 * cube.violation(u);
         tried.emplace_back(value, std::move(u));
@@ -204,9 +230,9 @@ std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed
     double best = std::numeric_limits<double>::infinity();
     std::optional<Candidate> result;
     for (std::size_t i = 0; i < used; ++i) {
-        progress.check();
+        say_step(progress, of_places, 1, "starts followed to their best design", i, used);
         for (const std::vector<double>& u :
-             {tried[i].second, polished(cube.objectives.front(), cube.limits, tried[i].second)}) {
+             {tried[i].second, polished(cube.objectives.front(), cube.limits, tried[i].second, progress)}) {
             const double value = cube.objectives.front()(u, {});
             if (cube.violation(u) <= tolerance && value < best) {
                 best = value;
@@ -214,6 +240,8 @@ std::optional<Candidate> DesignSearch::optimum(double sigmas, std::uint64_t seed
             }
         }
     }
+    progress.check();
+    progress.report(1, "best design");
     return result;
 }
 
@@ -289,20 +317,25 @@ std::vector<Candidate> DesignSearch::pareto_front(std::size_t count, double sigm
         }
         points.push_back(std::move(point));
     };
-    for (const std::vector<double>& u : sobol_plan(places_for(problem_, sigmas, 500, 3000), axes, seed)) {
-        take(u);
+    const Plan places = sobol_plan(places_for(problem_, sigmas, 500, 3000), axes, seed);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        say_step(progress, 0, of_places, "designs looked at", i, places.size());
+        take(places[i]);
     }
     keep_front(points);
     // From points of the front, each as far as it goes.
     const std::vector<FrontPoint> cloud = points;
-    for (std::size_t i = 0; i < std::min<std::size_t>(cloud.size(), 2 * count); ++i) {
-        progress.check();
-        const FrontPoint& start = cloud[i * cloud.size() / std::min<std::size_t>(cloud.size(), 2 * count)];
+    const std::size_t used = std::min<std::size_t>(cloud.size(), 2 * count);
+    for (std::size_t i = 0; i < used; ++i) {
+        say_step(progress, of_places, 1, "points of the front followed", i, used);
+        const FrontPoint& start = cloud[i * cloud.size() / used];
         // All other objectives no worse than here; the one in turn as small as it gets.
         const std::size_t turn = i % objectives;
         const std::vector<Function> limits = limits_from(cube.objectives, cube.limits, start, turn);
-        take(polished(cube.objectives[turn], limits, start.u));
+        take(polished(cube.objectives[turn], limits, start.u, progress));
     }
+    progress.check();
+    progress.report(1, "front");
     keep_front(points);
     sort_distinct(points);
     std::vector<Candidate> result;

@@ -18,6 +18,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double apart = 0.01;  // share of the ranges within which two runs say the same
 
+/// Which design of a batch is looked for.
+void say_design(core::Progress& progress, std::size_t done, std::size_t count) {
+    progress.report(static_cast<double>(done) / static_cast<double>(count),
+                    "design " + std::to_string(done + 1) + " of " + std::to_string(count));
+}
+
 /// How often a run near `x` gave a result: runs count by their distance, and two that did stand for what is known
 /// before any.
 double chance_solved(const std::vector<SearchVariable>& variables, std::span<const double> x,
@@ -321,6 +327,7 @@ std::vector<Candidate> DesignSearch::next_designs(const NextOptions& options, co
     }
     while (batch.size() < options.count) {
         progress.check();
+        say_design(progress, batch.size(), options.count);
         // Surrogates are cheaper than shapes: known limits are asked of those that would be chosen.
         DesignSearch unlimited = search;
         unlimited.problem_.known_limits.clear();
@@ -361,6 +368,7 @@ std::vector<Candidate> DesignSearch::next_to_learn(const NextOptions& options, c
     const auto filled = [&](std::span<const double> u) { return bound.filled_point(bound.told, unscaled(u)); };
     while (batch.size() < options.count) {
         progress.check();
+        say_design(progress, batch.size(), options.count);
         const Surrogate& surrogate = search.surrogates_.at(problem_.objectives.front().response.quantity);
         double most = 0;
         Candidate chosen;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -343,6 +344,32 @@ TEST(Search, LimitsHoldAtTheBest) {
     impossible.known_limits.push_back([](std::span<const double> x) { return x[0] - 2; });
     EXPECT_FALSE(DesignSearch(impossible, {{"f", of_branin(60, 2)}}).optimum(0, 1));
     EXPECT_TRUE(DesignSearch(impossible, {{"f", of_branin(30, 2)}}).next_designs({}).empty());
+}
+
+// Two minutes passed without a word.
+TEST(Search, ASearchSaysHowFarItIsAndIsCancelledAtOnce) {
+    SearchProblem problem = smallest_f();
+    problem.known_limits = {[](std::span<const double> x) { return 3 - x[0]; }};
+    const DesignSearch search(problem, {{"f", of_branin(30, 2)}});
+    std::vector<std::pair<double, std::string>> said;
+    core::Progress progress([&](double fraction, const std::string& what) { said.emplace_back(fraction, what); });
+    ASSERT_TRUE(search.optimum(0, 1, progress));
+    ASSERT_GT(said.size(), 100U);
+    EXPECT_TRUE(
+        std::is_sorted(said.begin(), said.end(), [](const auto& a, const auto& b) { return a.first < b.first; }));
+    EXPECT_EQ(said.front(), std::pair(0.0, std::string("designs looked at: 0 of 500")));
+    EXPECT_EQ(said.back().first, 1);
+    EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const auto& one) {
+        return one.second == "starts followed to their best design: 9 of 10";
+    }));
+    int asked = 0;
+    core::Progress stopped([&](double, const std::string&) {
+        if (++asked == 505) {  // while the fifth start is followed
+            stopped.cancel();
+        }
+    });
+    EXPECT_THROW(search.optimum(0, 1, stopped), core::Cancelled);
+    EXPECT_LE(asked, 506);
 }
 
 TEST(Search, RunByRunTheSearchFindsTheMinimum) {
