@@ -322,35 +322,8 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
             scales.push_back(dynamics::velocity_scale(record.time, record.gap, record.velocity, result.gap_noise));
         }
     }
-<<<<<<< ours
     const auto doubt = dynamics::doubtful_velocity(scales);
     if (!doubt) {
-=======
-    const double slope = slopes.empty() ? 1 : median(slopes);
-    const double ratio = ratios.empty() ? 1 : median(ratios);
-    std::vector<double> apart;
-    for (const double one : ratios) {
-        apart.push_back(std::abs(one - ratio));
-    }
-    // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
-    const double tolerance = ratios.size() < 3
-                                 ? 0.25
-                                 : std::max(0.05, 5 * 1.25 * core::sigma_of_median_distance * median(apart) /
-                                                      std::sqrt(static_cast<double>(ratios.size())));
-    std::string text;
-    if (slope < -0.5 && slope > -2) {
-        text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";
-    } else if (std::abs(slope) < 0.5 || std::abs(slope) > 2) {
-        const bool thousand = (slope > 500 && slope < 2000) || (slope > 5e-4 && slope < 2e-3);
-        text = "heave_velocity is " + core::format_number(slope, 3) + " times what the gap's changes say" +
-               (thousand ? ": a unit wrong by a thousand?" : ": another channel, another run, or swapped columns?") +
-               " It is not used";
-    } else if (std::abs(ratio - 1) > tolerance) {
-        text = "heave_velocity is " + core::format_number(ratio, 3) +
-               " times what the gap's changes say: is the scale of one of the two wrong? It is not used";
-    }
-    if (text.empty()) {
->>>>>>> theirs
         return;
     }
     remark(result.problems, doubt->text + (doubt->turned ? ": it is turned round)" : " It is not used"),
