@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/no_limit.h"
+#include "core/normal.h"
 #include "core/quantile.h"
 #include "core/text.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
@@ -137,10 +138,10 @@ std::optional<DoubtfulVelocity> doubtful_velocity(const std::vector<VelocityScal
         apart.push_back(std::abs(one - ratio));
     }
     // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
-    const double tolerance =
-        ratios.size() < 3
-            ? 0.25
-            : std::max(0.05, 5 * 1.25 * 1.4826 * core::median(apart) / std::sqrt(static_cast<double>(ratios.size())));
+    const double tolerance = ratios.size() < 3
+                                 ? 0.25
+                                 : std::max(0.05, 5 * 1.25 * core::sigma_of_median_distance * core::median(apart) /
+                                                      std::sqrt(static_cast<double>(ratios.size())));
     if (slope < -0.5 && slope > -2) {
         return DoubtfulVelocity{"heave_velocity has the opposite sign of the gap's changes (positive is up", true};
     }
