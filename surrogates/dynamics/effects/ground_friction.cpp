@@ -15,7 +15,7 @@ const Effect& ground_friction_effect() {
                             {},
                             {{"coefficient", "1", -2, 2, 0.05, 0, false, "added to contact.friction"}},
                             "Coulomb 1785"},
-                 {.kin = {"surge"}}),
+                 {.adds_to = "contact", .kin = {"surge"}}),
         {.look =
              [](const SearchContext& context, std::vector<EffectParameter>& parameters, double& /*prior*/) {
                  parameters[0].lower = -context.model.contact.friction;  // less than none is none

@@ -25,6 +25,7 @@ struct EffectLaw {
     void (*before)(StaticPoint& point, const EffectUse& use) = nullptr;
     double (*after)(const std::string& quantity, double value, const StaticPoint& seen, const Conditions& set_point,
                     const EffectUse& use) = nullptr;
+    std::vector<double> (*kinks)(Channel channel, const EffectUse& use) = nullptr;
 };
 
 class LawEffect final : public Effect {
@@ -49,6 +50,9 @@ public:
     [[nodiscard]] double after(const std::string& quantity, double value, const StaticPoint& seen,
                                const Conditions& set_point, const EffectUse& use) const override {
         return law_.after == nullptr ? value : law_.after(quantity, value, seen, set_point, use);
+    }
+    [[nodiscard]] std::vector<double> kinks(Channel channel, const EffectUse& use) const override {
+        return law_.kinks == nullptr ? std::vector<double>{} : law_.kinks(channel, use);
     }
 
 private:

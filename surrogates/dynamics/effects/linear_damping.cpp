@@ -15,7 +15,7 @@ const Effect& linear_damping_effect() {
                             {"heave_velocity"},
                             {{"coefficient", "N s/m", -100, 10000.0, 0.2, 0, false, "resistance positive"}},
                             "definition"},
-                 {.kin = {"damping"}, .one_sign = true}),
+                 {.adds_to = "drag.heave", .kin = {"damping"}, .one_sign = true}),
         {.look =
              [](const SearchContext& context, std::vector<EffectParameter>& parameters, double& /*prior*/) {
                  if (context.time_series && context.model.drag_heave.kind == DragLaw::Kind::linear_quadratic) {

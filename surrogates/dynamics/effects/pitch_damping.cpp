@@ -15,7 +15,7 @@ const Effect& pitch_damping_effect() {
                             {"pitch_rate"},
                             {{"coefficient", "N m s", -10, 10000, 0.005, 0, false, "resistance positive"}},
                             "definition"},
-                 {.kin = {"pitch damping"}, .one_sign = true}),
+                 {.adds_to = "drag.pitch", .kin = {"pitch damping"}, .one_sign = true}),
         {.look =
              [](const SearchContext& context, std::vector<EffectParameter>& parameters, double& /*prior*/) {
                  if (context.pitches && context.model.drag_pitch.kind == DragLaw::Kind::linear_quadratic) {

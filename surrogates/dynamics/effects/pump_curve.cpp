@@ -55,6 +55,10 @@ const Effect& pump_curve_effect() {
                      point.conditions[Channel::jet_voltage] =
                          seen_by_the_law(point.conditions[Channel::jet_voltage], reference_voltage(*point.model), use);
                  }
+             },
+         .kinks =
+             [](Channel channel, const EffectUse& use) {
+                 return channel == Channel::jet_voltage ? std::vector<double>{use.values[0]} : std::vector<double>{};
              }}};
     return effect;
 }

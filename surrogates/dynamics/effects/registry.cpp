@@ -11,6 +11,7 @@ double Effect::after(const std::string&, double value, const StaticPoint&, const
     return value;
 }
 
+std::vector<double> Effect::kinks(Channel, const EffectUse&) const { return {}; }
 bool Effect::look(const SearchContext&, std::vector<EffectParameter>&, double&) const { return true; }
 
 namespace {

@@ -87,6 +87,10 @@ const Effect& speed_exponent_effect() {
                  const double factor = std::pow(ratio, use.values[0] - declared.exponent);
                  const double still = part_without_speed(*seen.model, quantity, seen.conditions);
                  return still + (value - still) * factor;
+             },
+         .kinks =
+             [](Channel channel, const EffectUse& /*use*/) {
+                 return channel == Channel::speed ? std::vector<double>{0.0} : std::vector<double>{};
              }}};
     return effect;
 }

@@ -14,7 +14,7 @@ const Effect& squeeze_film_damping_effect() {
                                                       {{"coefficient", "N s m^2", 0, 0.01, 1e-06, 0, false,
                                                         "12 mu pi a^3 b^3/(4 (a^2 + b^2)) for a flat ellipse"}},
                                                       "Reynolds 1886; Stefan 1874 (circle: 3 pi mu R^4/2)"},
-                                           {.kin = {"damping"}, .one_sign = true}),
+                                           {.adds_to = "drag.heave", .kin = {"damping"}, .one_sign = true}),
                                   {.add_to = [](HeaveTerms& terms, const EffectUse& use, const Model& /*model*/) {
                                       terms.film += use.values[0];
                                   }}};

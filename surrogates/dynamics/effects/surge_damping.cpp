@@ -15,7 +15,7 @@ const Effect& surge_damping_effect() {
                             {"speed"},
                             {{"coefficient", "N s/m", -1000, 1000, 0.05, 0, false, "positive slows"}},
                             "definition"},
-                 {.kin = {"surge"}}),
+                 {.adds_to = "drag.surge", .kin = {"surge"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
                     double& /*prior*/) { return context.turns; },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,

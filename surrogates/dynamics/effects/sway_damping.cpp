@@ -15,7 +15,7 @@ const Effect& sway_damping_effect() {
                             {"sway_velocity"},
                             {{"coefficient", "N s/m", -1000, 1000, 0.1, 0, false, "positive slows"}},
                             "definition"},
-                 {.kin = {"turning"}}),
+                 {.adds_to = "drag.sway", .kin = {"turning"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
                     double& /*prior*/) { return context.turns; },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,

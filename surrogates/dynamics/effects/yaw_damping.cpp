@@ -15,7 +15,7 @@ const Effect& yaw_damping_effect() {
                             {"yaw_rate"},
                             {{"coefficient", "N m s", -1000, 1000, 0.002, 0, false, "positive slows"}},
                             "definition"},
-                 {.kin = {"turning"}}),
+                 {.adds_to = "drag.yaw", .kin = {"turning"}}),
         {.look = [](const SearchContext& context, std::vector<EffectParameter>& /*parameters*/,
                     double& /*prior*/) { return context.turns; },
          .add_to = [](HeaveTerms& terms, const EffectUse& use,

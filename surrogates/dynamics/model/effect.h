@@ -1,5 +1,5 @@
-// An effect: physics that a model may lack, as a plug-in. One file each in this folder, one line in registry.cpp;
-// simulation, prediction, discovery, help and desktop then know it.
+// An effect: physics that a model may lack, as a plug-in. One file each in surrogates/dynamics/effects, one line in
+// catalogue.h there; simulation, prediction, discovery, help and desktop then know it.
 #pragma once
 
 #include <optional>
@@ -36,6 +36,7 @@ struct EffectSearch {
     /// Numbers that fits begin at, each of the length of the parameters; of an effect that time series show, theirs
     /// alone. Empty: a little off neutral.
     std::vector<std::vector<double>> starts{};
+    std::string adds_to{};            ///< declared numbers of the model that its law is beside: "drag.heave", "contact"
     std::vector<std::string> kin{};   ///< groups of effects that can stand in for parts of each other
     bool one_sign = false;            ///< of one kin and of opposite signs two of them are one law that neither has
     double prior = 1;                 ///< before the data were seen
@@ -123,6 +124,9 @@ public:
     /// changed by all `before`s.
     [[nodiscard]] virtual double after(const std::string& quantity, double value, const StaticPoint& seen,
                                        const Conditions& set_point, const EffectUse& use) const;
+
+    /// Values of a channel at which the forces bend by it, beside those at which tables do. Default: none.
+    [[nodiscard]] virtual std::vector<double> kinks(Channel channel, const EffectUse& use) const;
 
     /// False where the effect can change nothing that was measured of this model. Else narrows bounds, moves neutral
     /// values and the prior to what is possible on this vehicle; equal bounds hold a number. Default: true, nothing

@@ -332,12 +332,8 @@ private:
             }
         }
         for (const EffectUse& use : model_.effects) {
-            if (use.name == "pump_curve" && axis.channel == Channel::jet_voltage) {
-                result.kinks.push_back(use.values[0]);
-            }
-            if (use.name == "speed_exponent" && axis.channel == Channel::speed) {
-                result.kinks.push_back(0);
-            }
+            const std::vector<double> bends = effect(use.name).kinks(axis.channel, use);
+            result.kinks.insert(result.kinks.end(), bends.begin(), bends.end());
         }
         std::erase_if(result.lines, [&](double x) { return x < axis.lower || x > axis.upper; });
         std::sort(result.lines.begin(), result.lines.end());

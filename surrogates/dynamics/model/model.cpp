@@ -138,7 +138,7 @@ Model Model::resolved() const {
     Model result = *this;
     std::vector<EffectUse> kept;
     for (const EffectUse& use : effects) {
-        if (use.name == "declared_parameter") {
+        if (!use.parameter.empty()) {
             result = result.with_parameter(use.parameter, use.values.at(0));
         } else {
             kept.push_back(use);

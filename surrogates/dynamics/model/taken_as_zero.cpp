@@ -17,19 +17,16 @@ bool declares(const Model& model, const std::string& name) {
     return std::find(model.declared.begin(), model.declared.end(), name) != model.declared.end();
 }
 
-bool has_one(const Model& model, const std::vector<const char*>& effects) {
+/// Is there an effect beside the declared numbers of this name, or in the place of one of them?
+bool has_effect(const Model& model, const std::string& name) {
     return std::any_of(model.effects.begin(), model.effects.end(), [&](const EffectUse& use) {
-        return std::any_of(effects.begin(), effects.end(), [&](const char* name) {
-            return use.name == name ||
-                   (use.name == "declared_parameter" && use.parameter.starts_with(std::string(name) + "."));
-        });
+        return effect(use.name).info().search.adds_to == name || use.parameter.starts_with(name + ".");
     });
 }
 
 struct Law {
     std::string name;  ///< "drag.surge"
     const DragLaw* law;
-    std::vector<const char*> effects;  ///< in its place, and what may change it
 };
 
 core::Problems taken_as_zero(const Model& model, const std::vector<Law>& laws, bool touches,
@@ -37,7 +34,7 @@ core::Problems taken_as_zero(const Model& model, const std::vector<Law>& laws, b
     std::vector<std::string> unsaid;
     for (const Law& one : laws) {
         const bool said = one.law->linear != 0 || one.law->quadratic != 0 || declares(model, one.name + ".linear") ||
-                          declares(model, one.name + ".quadratic") || has_one(model, one.effects);
+                          declares(model, one.name + ".quadratic") || has_effect(model, one.name);
         const std::vector<std::string> quantities = model.quantities();
         const bool by_table = one.name == "drag.surge" &&
                               std::find(quantities.begin(), quantities.end(), "drag_force") != quantities.end();
@@ -46,7 +43,7 @@ core::Problems taken_as_zero(const Model& model, const std::vector<Law>& laws, b
         }
     }
     if (touches && model.contact.friction == 0 && !declares(model, "contact.friction") &&
-        !has_one(model, {"ground_friction", "contact"})) {
+        !has_effect(model, "contact")) {
         unsaid.emplace_back("contact.friction");
     }
     if (unsaid.empty()) {
@@ -65,22 +62,18 @@ core::Problems taken_as_zero(const Model& model, const std::vector<Law>& laws, b
 }  // namespace
 
 core::Problems taken_as_zero_on_ground(const Model& model) {
-    return taken_as_zero(model,
-                         {{"drag.surge", &model.drag_surge, {"surge_damping", "drag.surge"}},
-                          {"drag.sway", &model.drag_sway, {"sway_damping", "drag.sway"}},
-                          {"drag.yaw", &model.drag_yaw, {"yaw_damping", "drag.yaw"}}},
-                         true, "on the ground");
+    return taken_as_zero(
+        model, {{"drag.surge", &model.drag_surge}, {"drag.sway", &model.drag_sway}, {"drag.yaw", &model.drag_yaw}},
+        true, "on the ground");
 }
 
 core::Problems taken_as_zero_of_body(const Model& model, bool touches) {
     return taken_as_zero(model,
-                         {{"drag.surge", &model.drag_surge, {"surge_damping", "drag.surge"}},
-                          {"drag.sway", &model.drag_sway, {"sway_damping", "drag.sway"}},
-                          {"drag.heave",
-                           &model.drag_heave,
-                           {"linear_damping", "quadratic_damping", "squeeze_film_damping", "drag.heave"}},
-                          {"drag.pitch", &model.drag_pitch, {"pitch_damping", "pitch_quadratic_damping", "drag.pitch"}},
-                          {"drag.yaw", &model.drag_yaw, {"yaw_damping", "drag.yaw"}}},
+                         {{"drag.surge", &model.drag_surge},
+                          {"drag.sway", &model.drag_sway},
+                          {"drag.heave", &model.drag_heave},
+                          {"drag.pitch", &model.drag_pitch},
+                          {"drag.yaw", &model.drag_yaw}},
                          touches, "in the motion of the whole body");
 }
 

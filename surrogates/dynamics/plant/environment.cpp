@@ -39,17 +39,7 @@ Surroundings RecordedInputs::at(double t, const double* memory) {
     return around;
 }
 
-double RecordedInputs::max_step() const {
-    double step = 0;
-    if (run_) {
-        step = longest_step(run_->time());
-    }
-    for (const HeaveTerms::Wave& wave : vertical_.terms.waves) {
-        const double part = 0.1 / std::max(wave.frequency, 1e-9);
-        step = step > 0 ? std::min(step, part) : part;
-    }
-    return step;
-}
+double RecordedInputs::max_step() const { return within_waves(run_ ? longest_step(run_->time()) : 0, vertical_.terms); }
 
 std::vector<Channel> varying_channels(const InputSignals& inputs) {
     std::vector<Channel> varying;
@@ -78,10 +68,11 @@ namespace {
 /// A condition holds from long before the start, and what an actuator makes of a constant late or slowly is that
 /// constant. Who declares a delay or a lag and gives a constant may have meant a step.
 core::Problems held_before_start(const Model& model, const Conditions& held) {
-    const bool late = std::any_of(model.effects.begin(), model.effects.end(), [](const EffectUse& use) {
-        return use.name == "input_delay" || use.name == "actuator_lag";
-    });
-    if (!late || held.get(Channel::input_force, 0) == 0) {
+    HeaveTerms terms;
+    for (const EffectUse& use : model.effects) {
+        effect(use.name).add_to(terms, use, model);
+    }
+    if (!terms.actuator.has_states() || held.get(Channel::input_force, 0) == 0) {
         return {};
     }
     return {{core::Problem::Severity::warning,

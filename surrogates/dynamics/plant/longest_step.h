@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/no_limit.h"
+#include "surrogates/dynamics/plant/heave_terms.h"
 
 namespace underbody::dynamics {
 
@@ -22,6 +23,15 @@ inline double longest_step(const std::vector<double>& times) {
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
         const double apart = times[i + 1] - times[i];
         step = apart >= jump * mean ? std::min(step, apart) : step;
+    }
+    return step;
+}
+
+/// `step` (s, 0: nothing bounds it), but no more than a tenth of a period of any wave that acts on the body.
+inline double within_waves(double step, const HeaveTerms& terms) {
+    for (const HeaveTerms::Wave& wave : terms.waves) {
+        const double part = 0.1 / std::max(wave.frequency, 1e-9);
+        step = step > 0 ? std::min(step, part) : part;
     }
     return step;
 }

@@ -142,14 +142,7 @@ void Flight::record(double t, const double* y) {
 
 double Flight::max_step() const {
     // Recorded inputs have corners that the integrator must not step over.
-    double step = 0;
-    if (run_) {
-        step = longest_step(run_->time());
-    }
-    for (const HeaveTerms::Wave& wave : plant_.terms.waves) {
-        const double period = 0.1 / std::max(wave.frequency, 1e-9);
-        step = step > 0 ? std::min(step, period) : period;
-    }
+    double step = within_waves(run_ ? longest_step(run_->time()) : 0, plant_.terms);
     if (plant_.loop_has_states() && actuator_.delayed()) {
         step = step > 0 ? std::min(step, actuator_.max_step()) : actuator_.max_step();
     }
