@@ -10,6 +10,7 @@ namespace underbody::discovery {
 const std::vector<CalibratedNumber>& calibrated_numbers() {
     using C = Calibration;
     const char* const unmeasured = "not measured since the guards judge the verdict";
+    const char* const heave_bench = "the heave bench; its seeds were not written down";
     static const std::vector<CalibratedNumber> list{
         {"gate", &C::gate, "heave seeds 4000 to 4501, static seeds 1 to 99", "2026-11-21", unmeasured},
         {"even_none", &C::even_none,
@@ -49,8 +50,26 @@ const std::vector<CalibratedNumber>& calibrated_numbers() {
         {"given_to_unknown", &C::given_to_unknown, "chosen: four to one, not set on simulations", "2026-11-22",
          unmeasured},
         {"left_undecided", &C::left_undecided, "definition: even odds", "2026-11-22", unmeasured},
-        {"pair_rest_share", &C::pair_rest_share, "the static bench on four rigs; its seeds were not written down",
+        {"pair_rest_share", &C::pair_rest_share,
+         "static: four rigs of the bench; runs: the heave bench; seeds were not written down", "2026-11-22",
+         unmeasured},
+        {"kin_share", &C::kin_share, heave_bench, "2026-11-21", unmeasured},
+        {"further_share", &C::further_share, heave_bench, "2026-11-22", unmeasured},
+        {"bound_prior", &C::bound_prior, "chosen, not set on simulations", "2026-11-22", unmeasured},
+        {"smooth_gain", &C::smooth_gain, heave_bench, "2026-11-22", unmeasured},
+        {"smooth_far_gain", &C::smooth_far_gain, heave_bench, "2026-11-22", unmeasured},
+        {"smooth_more", &C::smooth_more, heave_bench, "2026-11-22", unmeasured},
+        {"smooth_surprise", &C::smooth_surprise, "saves time: no chance above it passes the gate", "2026-11-22",
+         unmeasured},
+        {"rest_surprise", &C::rest_surprise, "saves time: one in a thousand among some thirty that are asked",
          "2026-11-22", unmeasured},
+        {"column_price", &C::column_price, "definition: three standard deviations", "2026-11-22", unmeasured},
+        {"colour_gain", &C::colour_gain, heave_bench, "2026-11-21", unmeasured},
+        {"colour_change", &C::colour_change, heave_bench, "2026-11-21", unmeasured},
+        {"shift_gain", &C::shift_gain, "chosen, not set on simulations", "2026-11-22", unmeasured},
+        {"accident_sigmas", &C::accident_sigmas, "definition: one in 500 million of a normal number", "2026-11-22",
+         unmeasured},
+        {"accident_share", &C::accident_share, "definition: one in a hundred", "2026-11-22", unmeasured},
         {"correct_chance", &C::correct_chance, "definition: one in a hundred", "2026-11-23", unmeasured},
         {"correction_reach", &C::correction_reach, "definition: all but two states in a thousand", "2026-11-22",
          unmeasured}};
@@ -98,6 +117,7 @@ Calibration heave_calibration(const std::map<std::string, double>& changed) {
     c.unknown_p = 1e-4;
     c.pair_share = 0.1;
     c.pair_gain = 40;
+    c.pair_rest_share = 0.5;
     return changed_by(c, changed);
 }
 

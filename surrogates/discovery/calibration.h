@@ -33,6 +33,20 @@ struct Calibration {
     double left_undecided =
         0.5;  ///< stated at most for a name, or for none, that the held-out readings do not bear out
     double pair_rest_share = 0.15;    ///< share of unknown_share that two laws together may leave: they bend to much
+    double kin_share = 3;             ///< times pair_share that a second effect of the same kin must add
+    double further_share = 0.5;       ///< share of pair_share that a third and a fourth effect must add
+    double bound_prior = 1e-4;        ///< odds of an effect that is driven against the bound of what physics allows
+    double smooth_gain = 10;          ///< in -2 log likelihood, by which a law without a name must do better than names
+    double smooth_far_gain = 100;     ///< more than that on all runs: it need not do better on the runs left out
+    double smooth_more = 1.35;        ///< times what a name explains that a law without one must explain
+    double smooth_surprise = 2;       ///< -log10 of the nominal chance below which no smooth law is asked at the gate
+    double rest_surprise = 3;         ///< likewise of what a name leaves: smooth laws, and further effects
+    double column_price = 9;          ///< gain that each column of a smooth law must bring to be among those fitted
+    double colour_gain = 25;          ///< in -2 log likelihood, of coloured noise beside white: with less there is none
+    double colour_change = 1.6;       ///< factor of the coloured noise beyond which everything is judged again
+    double shift_gain = 10;           ///< in -2 log likelihood: a shift below a sample that explains less is none
+    double accident_sigmas = 6;       ///< a gap reading farther from what its neighbours say is an accident
+    double accident_share = 0.01;     ///< of the readings: more are no accidents
     double correct_chance = 0.01;     ///< a quantity is corrected where its structure comes from noise less often
     double correction_reach = 0.998;  ///< quantile of a correction's force over the states seen that it may not exceed
 };

@@ -77,15 +77,14 @@ void HeaveLoop::split() {
 void HeaveLoop::fit_null() {
     HeaveNoise noise = experiment_->noise();
     experiment_->fit_process({}, noise);
-    experiment_->fit_noise({}, noise);
+    experiment_->fit_noise({}, noise, calibration_.colour_gain);
     set_null(noise);
 }
 
 namespace {
 
-/// Steps whose gap is far from what the filter expects while its neighbours are not.
-std::vector<std::size_t> accidents(const HeaveRecord& record, const std::vector<double>& innovations) {
-    constexpr double far = 6;  // standard deviations
+/// Steps whose gap is `far` standard deviations from what the filter expects while its neighbours are not.
+std::vector<std::size_t> accidents(const HeaveRecord& record, const std::vector<double>& innovations, double far) {
     const std::size_t channels = record.velocity.empty() ? 1 : 2;
     std::vector<std::size_t> found;
     for (std::size_t k = 25; k + 3 < record.time.size(); ++k) {
@@ -104,15 +103,15 @@ std::vector<std::size_t> accidents(const HeaveRecord& record, const std::vector<
 
 /// Takes them out of the chosen records; returns how many.
 std::size_t drop_accidents_of(HeaveRecords& records, const std::vector<std::size_t>& chosen,
-                              const HeaveExperiment& experiment, const HeaveNoise& noise) {
-    constexpr double most = 0.01;  // of the readings: more are no accidents
+                              const HeaveExperiment& experiment, const HeaveNoise& noise,
+                              const Calibration& calibration) {
     std::size_t dropped = 0;
     for (const std::size_t r : chosen) {
         HeaveRecord& record = records.records[r];
         std::vector<double> innovations;
         filter_innovations(record, experiment.explanation(r, {}), noise, innovations);
-        const std::vector<std::size_t> bad = accidents(record, innovations);
-        if (static_cast<double>(bad.size()) < most * static_cast<double>(record.time.size())) {
+        const std::vector<std::size_t> bad = accidents(record, innovations, calibration.accident_sigmas);
+        if (static_cast<double>(bad.size()) < calibration.accident_share * static_cast<double>(record.time.size())) {
             for (const std::size_t k : bad) {
                 record.gap[k] = std::nan("");
             }
@@ -128,7 +127,7 @@ std::size_t drop_accidents_of(HeaveRecords& records, const std::vector<std::size
 void HeaveLoop::drop_accidents() {
     std::size_t dropped = 0;
     for (int round = 0; round < 3; ++round) {
-        const std::size_t more = drop_accidents_of(records_, train_, *experiment_, null_noise_);
+        const std::size_t more = drop_accidents_of(records_, train_, *experiment_, null_noise_, calibration_);
         dropped += more;
         if (more == 0) {
             break;
@@ -144,7 +143,7 @@ void HeaveLoop::drop_accidents() {
     if (test_ != train_ || test_records_) {
         const HeaveExperiment test(model_, records, test_, null_noise_.gap, {});
         for (int round = 0; round < 3; ++round) {
-            drop_accidents_of(records, test_, test, null_noise_);
+            drop_accidents_of(records, test_, test, null_noise_, calibration_);
         }
     }
 }
@@ -161,8 +160,8 @@ HeaveExperiment::Result HeaveLoop::fitted(const Hypothesis& hypothesis, const He
     result.fitted.explained = null_cost_ - result.fitted.cost;
     const FitParameter& chief = hypothesis.parameters.front();
     if (result.fitted.fit.parameters.front() >= chief.upper - 1e-9 * std::abs(chief.upper)) {
-        result.fitted.hypothesis.prior *=
-            1e-4;  // driven against the bound of what physics allows: it stands in for something else
+        // driven against the bound of what physics allows: it stands in for something else
+        result.fitted.hypothesis.prior *= calibration_.bound_prior;
     }
     result.fitted.explained_by_group = null_by_record_;
     for (std::size_t r = 0; r < null_by_record_.size(); ++r) {
@@ -258,11 +257,13 @@ void HeaveLoop::colour_noise() {
         HeaveNoise noise = noises_[best_single_];
         const FittedHypothesis& best = fitted_[best_single_];
         const double before = null_noise_.slow;
-        const bool coloured = experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise);
+        const bool coloured =
+            experiment_->fit_noise(best.hypothesis.with(best.fit.parameters), noise, calibration_.colour_gain);
         if (!coloured && before == 0) {
             return;
         }
-        if (coloured && before > 0 && noise.slow < 1.6 * before && noise.slow > before / 1.6) {
+        if (coloured && before > 0 && noise.slow < calibration_.colour_change * before &&
+            noise.slow > before / calibration_.colour_change) {
             return;
         }
         HeaveNoise null = noise;
@@ -281,7 +282,8 @@ void HeaveLoop::absorb_small_shift() {
     const FittedHypothesis& best = fitted_[best_single_];
     const double shift = best.fit.parameters.front();
     const bool in_time = touch_of(best.hypothesis, model_).time;
-    if (!records_.input_recorded || !in_time || std::abs(shift) >= records_.raw_step || best.explained < 10) {
+    if (!records_.input_recorded || !in_time || std::abs(shift) >= records_.raw_step ||
+        best.explained < calibration_.shift_gain) {
         return;
     }
     change_input(shift, 1);

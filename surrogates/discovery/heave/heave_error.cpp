@@ -132,14 +132,6 @@ BlockSquares WindowSquares::blocks(std::size_t records, std::size_t wanted) cons
     return sums;
 }
 
-void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
-                    const HeaveNoise& noise, double horizon, std::vector<double>& sum_of_squares,
-                    std::vector<double>& counts) {
-    BlockSquares sums = window_errors(experiment, uses, noise, horizon).by_record(experiment.chosen().size());
-    sum_of_squares = std::move(sums.square);
-    counts = std::move(sums.count);
-}
-
 double estimator_error(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                        const HeaveNoise& noise, const std::vector<dynamics::EffectUse>& better,
                        const HeaveNoise& better_noise) {
@@ -152,7 +144,7 @@ double estimator_error(const HeaveExperiment& experiment, const std::vector<dyna
         states.clear();
         filter_innovations(record, experiment.explanation(r, uses), noise, innovations, &states);
         const SmoothedRun reference = smooth_with_force(record, experiment.explanation(r, better), better_noise,
-                                                        0.001 * record.plant->terms.mass);
+                                                        usual_force_walk * record.plant->terms.mass);
         for (std::size_t k = 0; k < record.time.size(); ++k) {
             if (record.time[k] - record.time.front() >
                 std::min(2.0, 0.4 * (record.time.back() - record.time.front()))) {

@@ -35,10 +35,6 @@ PredictedWindows predicted_windows(const dynamics::Model& model, const dynamics:
 /// is predicted_windows().
 WindowSquares window_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
                             const HeaveNoise& noise, double horizon);
-/// The same summed by record.
-void horizon_errors(const HeaveExperiment& experiment, const std::vector<dynamics::EffectUse>& uses,
-                    const HeaveNoise& noise, double horizon, std::vector<double>& sum_of_squares,
-                    std::vector<double>& counts);
 
 /// Root mean square of the velocity that a Kalman filter with one explanation gives, less the velocity smoothed with
 /// the better one, m/s.

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/text.h"
 #include "surrogates/discovery/statistics.h"
+#include "surrogates/dynamics/model/force_sources.h"
 #include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
@@ -15,6 +17,7 @@ namespace {
 constexpr double process_floor = 1e-12;  ///< m^2/s^3: below it nothing changes any more
 constexpr double process_ceiling = 1e-2;
 constexpr double small_force = 0.003;  ///< N, of a smooth correction: scale of its coefficients
+constexpr double not_seen = 0.002;     ///< share of the states at either end beyond which a correction is constant
 constexpr double smooth_ridge = 0.5;   ///< their prior: a standard deviation of 1.4 times that scale
 
 }  // namespace
@@ -91,10 +94,8 @@ double HeaveExperiment::lift_gain_of(const dynamics::EffectUse& use, std::size_t
         }
         for (const dynamics::ForceScale& scale : source.scales) {
             if (use.parameter == prefix + "scale." + dynamics::channel_name(scale.channel) + ".exponent") {
-                const double held =
-                    std::abs(records_.records[record].plant->held().get(scale.channel, scale.reference));
-                const double ratio = std::max(0.0, held - scale.dead_band) / (scale.reference - scale.dead_band);
-                return ratio > 0 ? std::pow(ratio, use.values[0] - scale.exponent) : 1;
+                const double held = records_.records[record].plant->held().get(scale.channel, scale.reference);
+                return dynamics::scale_factor(scale.reference, use.values[0] - scale.exponent, scale.dead_band, held);
             }
         }
     }
@@ -157,7 +158,8 @@ double HeaveExperiment::fit_process(const std::vector<dynamics::EffectUse>& uses
     return best;
 }
 
-bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const {
+bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise,
+                                double colour_gain) const {
     std::vector<double> innovations;
     HeaveNoise best_noise = noise;
     best_noise.slow = 0;
@@ -192,7 +194,7 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
             }
         }
     }
-    if (white_only - best < 25) {
+    if (white_only - best < colour_gain) {
         noise.slow = 0;
         return false;
     }
@@ -341,8 +343,8 @@ FlexibleForce HeaveExperiment::flat_force(const SmoothSet& set, const std::vecto
         }
     }
     for (std::vector<double>& variable : values) {
-        double low = quantile(variable, 0.002);
-        double high = quantile(variable, 0.998);
+        double low = quantile(variable, not_seen);
+        double high = quantile(variable, 1 - not_seen);
         for (double& value : variable) {
             value = std::clamp(value, low, high);
         }
@@ -609,7 +611,7 @@ WaveLine HeaveExperiment::line_at(double frequency, const std::vector<dynamics::
     for (int part = 0; part < 2; ++part) {
         std::vector<dynamics::EffectUse> with = uses;
         with.push_back(wave);
-        with.back().values = {small, frequency, part == 0 ? 0.0 : 1.5707963267948966};
+        with.back().values = {small, frequency, part == 0 ? 0.0 : std::numbers::pi / 2};
         evaluate(with, nullptr, noise, moved);
         answer[part].resize(base.size());
         for (std::size_t i = 0; i < base.size(); ++i) {

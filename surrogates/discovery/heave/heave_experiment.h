@@ -46,8 +46,9 @@ public:
 
     /// Process noise of greatest likelihood for these effects, starting from noise.process; the cost there.
     double fit_process(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const;
-    /// White and coloured sensor noise as well. True if coloured noise was found to be there.
-    bool fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise) const;
+    /// White and coloured sensor noise as well. True if coloured noise was found to be there: it gains `colour_gain` or
+    /// more in -2 log likelihood (Calibration).
+    bool fit_noise(const std::vector<dynamics::EffectUse>& uses, HeaveNoise& noise, double colour_gain) const;
 
     struct Result {
         FittedHypothesis fitted;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "surrogates/discovery/static/static_figures.h"
 
@@ -51,7 +52,7 @@ public:
     }
 
     void add(const std::vector<double>& time, const std::vector<double>& force) {
-        constexpr double two_pi = 6.283185307179586;
+        constexpr double two_pi = 2 * std::numbers::pi;
         const double begin = time.front();
         const double length = time.back() - begin;
         for (std::size_t f = 0; f < power_.size(); ++f) {
@@ -108,8 +109,8 @@ public:
         Spectrum spectrum;
         for (const std::size_t r : experiment_.chosen()) {
             const HeaveRecord& record = experiment_.records().records[r];
-            const SmoothedRun run =
-                smooth_with_force(record, experiment_.explanation(r, uses), calm_, 0.001 * record.plant->terms.mass);
+            const SmoothedRun run = smooth_with_force(record, experiment_.explanation(r, uses), calm_,
+                                                      usual_force_walk * record.plant->terms.mass);
             spectrum.add(run.time, run.force);
             for (std::size_t k = 10; k + 10 < run.time.size(); ++k) {
                 gap.emplace_back(1000 * run.gap[k], 1000 * run.force[k]);

@@ -90,20 +90,15 @@ public:
         }
     }
 
-    /// How a step changes small differences of (gap, velocity).
-    struct Transition {
-        double hh = 1, hw = 0, wh = 0, ww = 1;
-    };
+    using Transition = HeaveTransition;
 
-    /// One step of at most `rest`, less where the motion is stiff: exact for the equation linearised where the step
-    /// begins (exponential Rosenbrock-Euler, Hochbruck and Ostermann 2010), its matrix functions as series. Returns its
-    /// length.
+    /// One step of at most `rest`, less where the motion is stiff (short_step()). Returns its length.
     double advance(double t, double rest, double u, double variance, double& h, double& w, Transition& transition) {
         dynamics::HeaveSlopes slopes;
         remember_over(rest);
         double a = acceleration(t + 0.5 * rest, h, w, u, variance, slopes);
         double dt = rest;
-        const double stiffness = std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
+        const double stiffness = stiffness_of(slopes);
         if (stiffness * dt > series_holds) {
             dt = std::max(series_holds / stiffness, std::min(rest, shortest_step));
             if (history_) {
@@ -115,18 +110,8 @@ public:
             fast_step(dt, a, slopes, h, w, transition);
             return dt;
         }
-        const double slope_h = slopes.gap;
-        const double slope_w = slopes.velocity;
-        const double jerk = slope_h * w + slope_w * a;
-        const double snap = slope_h * a + slope_w * jerk;
         const double before = w;
-        h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
-        w += dt * (a + dt * (jerk / 2 + dt * snap / 6));
-        const double q = 0.5 * dt * dt;
-        transition.hh = 1 + q * slope_h;
-        transition.hw = dt + q * slope_w;
-        transition.wh = dt * slope_h + q * slope_h * slope_w;
-        transition.ww = std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w));
+        transition = short_step(dt, a, slopes, h, w);
         remember(before, w);
         return dt;
     }
@@ -213,6 +198,21 @@ struct Covariance {
 };
 
 }  // namespace
+
+double stiffness_of(const dynamics::HeaveSlopes& slopes) {
+    return std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
+}
+
+HeaveTransition short_step(double dt, double a, const dynamics::HeaveSlopes& slopes, double& h, double& w) {
+    const double slope_h = slopes.gap, slope_w = slopes.velocity;
+    const double jerk = slope_h * w + slope_w * a;
+    const double snap = slope_h * a + slope_w * jerk;
+    h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
+    w += dt * (a + dt * (jerk / 2 + dt * snap / 6));
+    const double q = 0.5 * dt * dt;
+    return {1 + q * slope_h, dt + q * slope_w, dt * slope_h + q * slope_h * slope_w,
+            std::max(0.0, 1 + dt * slope_w + q * (slope_h + slope_w * slope_w))};
+}
 
 double FlexibleForce::value(double h, double w, double t, double u, double& slope_h, double& slope_w) const {
     double point[4];

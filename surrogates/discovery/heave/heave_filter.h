@@ -56,6 +56,17 @@ struct HeaveExplanation {
     bool hold = true;  ///< the recorded input is held from sample to sample (digital controller); else linear between
 };
 
+/// How a step of the heave equation changes small differences of (gap, velocity).
+struct HeaveTransition {
+    double hh = 1, hw = 0, wh = 0, ww = 1;
+};
+/// One step of dt seconds, exact for the equation linearised where it begins (exponential Rosenbrock-Euler, Hochbruck
+/// and Ostermann 2010), its matrix functions cut after four terms: moves gap h and velocity w of the acceleration `a`
+/// there. Good while dt times the stiffness of `slopes` is below one.
+HeaveTransition short_step(double dt, double a, const dynamics::HeaveSlopes& slopes, double& h, double& w);
+/// The larger of |slope along w| and the root of that along h, 1/s.
+double stiffness_of(const dynamics::HeaveSlopes& slopes);
+
 /// Fills held_input and linear_input from the recorded input: to be called whenever that was changed.
 void prepare_input(HeaveRecord& record);
 
@@ -76,6 +87,8 @@ double filter_innovations(const HeaveRecord& record, const HeaveExplanation& exp
 struct SmoothedRun {
     std::vector<double> time, gap, velocity, force, force_sigma;
 };
+/// N/sqrt(s) per kg of the body: how fast a residual force that nobody knows is let change.
+inline constexpr double usual_force_walk = 0.001;
 /// `force_walk` N/sqrt(s): how fast the residual force may change.
 SmoothedRun smooth_with_force(const HeaveRecord& record, const HeaveExplanation& explanation, const HeaveNoise& noise,
                               double force_walk);

@@ -110,7 +110,7 @@ HeaveRecords HeaveLoop::twins_of(const HeaveExperiment& experiment, const std::v
         const HeaveExplanation model = experiment.explanation(r, uses);
         HeaveNoise calm = noise;
         calm.process = 1e-9;
-        const SmoothedRun track = smooth_with_force(record, model, calm, 0.001 * model.terms.mass);
+        const SmoothedRun track = smooth_with_force(record, model, calm, usual_force_walk * model.terms.mass);
         Twin twin = simulate(record, model, track, {&own, nullptr}, drawn, random);
         if (!twin.stayed) {
             twin = simulate(record, model, track, {nullptr, &track}, drawn, random);

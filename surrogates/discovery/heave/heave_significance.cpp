@@ -159,7 +159,8 @@ void HeaveLoop::open_gate() {
         }
     }
     std::sort(smooth.begin(), smooth.end(), [](const Probe* a, const Probe* b) { return a->surprise > b->surprise; });
-    for (std::size_t k = 0; k < std::min<std::size_t>(2, smooth.size()) && smooth[k]->surprise > 2; ++k) {
+    for (std::size_t k = 0;
+         k < std::min<std::size_t>(2, smooth.size()) && smooth[k]->surprise > calibration_.smooth_surprise; ++k) {
         HeaveExperiment::Smooth fit = experiment_->fit_smooth(*smooth[k]->smooth, {}, null_noise_, null_cost_);
         const double gain = surprise(fit.fit.gain, fit.fit.degrees);
         gate_ = std::min(gate_, chance_in_noise(columns_of(list), fit.residuals, gain, 0));
@@ -181,13 +182,13 @@ HeaveLoop::Rest HeaveLoop::rest_beside(const FittedHypothesis& base, const Heave
     std::sort(smooth.begin(), smooth.end(), more);
     std::sort(second.begin(), second.end(), more);
     for (const Probe* probe : second) {
-        if (probe->surprise > 3) {
+        if (probe->surprise > calibration_.rest_surprise) {
             rest.second.push_back(probe->candidate);
         }
     }
     std::vector<HeaveExperiment::Smooth> fits;
     for (std::size_t k = 0; k < std::min<std::size_t>(2, smooth.size()); ++k) {
-        if (smooth[k]->surprise > 3) {
+        if (smooth[k]->surprise > calibration_.rest_surprise) {
             fits.push_back(experiment_->fit_smooth(*smooth[k]->smooth, uses, noise, base.cost));
         }
     }
@@ -216,10 +217,10 @@ void HeaveLoop::smooth_corrections() {
     for (const Probe& probe : list) {
         order.push_back(&probe);
     }
-    std::sort(order.begin(), order.end(), [](const Probe* a, const Probe* b) {
-        return a->gain - 9.0 * static_cast<double>(a->columns.columns) >
-               b->gain - 9.0 * static_cast<double>(b->columns.columns);
-    });
+    const auto worth = [&](const Probe* probe) {
+        return probe->gain - calibration_.column_price * static_cast<double>(probe->columns.columns);
+    };
+    std::sort(order.begin(), order.end(), [&](const Probe* a, const Probe* b) { return worth(a) > worth(b); });
     order.resize(std::min<std::size_t>(order.size(), 4));
     std::erase_if(order, [&](const Probe* probe) {  // those that opened the gate are fitted
         return std::any_of(whole_list_.begin(), whole_list_.end(),

@@ -146,12 +146,13 @@ void HeaveLoop::keep_pairs(const std::vector<FittedHypothesis>& found, const std
     const double gain = fitted_[best_single_].score() - found[best].score();
     // two effects of one kind may be one effect whose law has another form than the catalogue's: that needs more to be
     // believed
-    const double share = calibration_.pair_share * (one_kin(found[best].hypothesis.names) ? 3 : 1);
+    const double share = calibration_.pair_share * (one_kin(found[best].hypothesis.names) ? calibration_.kin_share : 1);
     if (gain < calibration_.pair_gain || gain < share * found[best].explained) {
         return;
     }
     // one smooth law that does better for its price is one law, not two
-    if (!whole_list_.empty() && smooth_score(best_smooth(whole_list_)) < found[best].cost + found[best].occam - 10) {
+    if (!whole_list_.empty() &&
+        smooth_score(best_smooth(whole_list_)) < found[best].cost + found[best].occam - calibration_.smooth_gain) {
         return;
     }
     // what a second effect adds on the runs that were fitted may be the first one's law in another form
@@ -162,7 +163,7 @@ void HeaveLoop::keep_pairs(const std::vector<FittedHypothesis>& found, const std
         return;
     }
     const Rest rest = rest_beside(found[best], noises[best]);
-    if (rest.fit.p > calibration_.unknown_p || rest.share < 0.5 * calibration_.unknown_share) {
+    if (rest.fit.p > calibration_.unknown_p || rest.share < calibration_.pair_rest_share * calibration_.unknown_share) {
         fitted_.insert(fitted_.end(), found.begin(), found.end());
         noises_.insert(noises_.end(), noises.begin(), noises.end());
         rest_ = rest;
@@ -194,8 +195,9 @@ void HeaveLoop::fit_further() {
         const std::size_t best = best_finding(found, count, calibration_.neutral_sigmas);
         // each has to bring as much as a second one must
         const double before = null_cost_ - fitted_[base].cost;
-        if (best == found.size() || fitted_[base].score() - found[best].score() <
-                                        std::max(calibration_.pair_gain, 0.5 * calibration_.pair_share * before)) {
+        if (best == found.size() ||
+            fitted_[base].score() - found[best].score() <
+                std::max(calibration_.pair_gain, calibration_.further_share * calibration_.pair_share * before)) {
             return;
         }
         rest_ = rest_beside(found[best], noises[best]);
@@ -258,11 +260,11 @@ void HeaveLoop::decide() {
         }
         // or so much better on all runs, at Schwarz's price, that runs which alone visit a corner of its variables
         // cannot spoil it
-        const bool far_better =
-            smooth_score(best_smooth(whole_list_)) < fitted_[chosen].cost + fitted_[chosen].occam - 100;
+        const bool far_better = smooth_score(best_smooth(whole_list_)) <
+                                fitted_[chosen].cost + fitted_[chosen].occam - calibration_.smooth_far_gain;
         // a law that does hardly more than a named one is that one in another form: a power of 1.9 instead of 2
-        const bool hardly_more = whole_.gain < 1.35 * fitted_[chosen].explained;
-        if ((smooth > named - 10 && !far_better) || hardly_more) {
+        const bool hardly_more = whole_.gain < calibration_.smooth_more * fitted_[chosen].explained;
+        if ((smooth > named - calibration_.smooth_gain && !far_better) || hardly_more) {
             rest.p = 1;
         }
     }

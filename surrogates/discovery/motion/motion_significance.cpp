@@ -99,10 +99,11 @@ void MotionLoop::open_gate() {
         gate_ = chance_in_noise(columns_of(probes_), fitted_[best_single_].fit.residuals, observed, 0);
     }
     const Probe* most = nullptr;
+    const auto worth = [&](const Probe& probe) {
+        return probe.gain - calibration_.column_price * static_cast<double>(probe.columns.columns);
+    };
     for (const Probe& probe : probes_) {
-        const double price = 9.0 * static_cast<double>(probe.columns.columns);
-        if (probe.smooth &&
-            (most == nullptr || probe.gain - price > most->gain - 9.0 * static_cast<double>(most->columns.columns))) {
+        if (probe.smooth && (most == nullptr || worth(probe) > worth(*most))) {
             most = &probe;
         }
     }
@@ -113,7 +114,8 @@ void MotionLoop::open_gate() {
     whole_.variables = most->smooth->variables;
     whole_.gain = most->gain;
     whole_.degrees = static_cast<double>(most->columns.columns);
-    if (gate_ >= calibration_.gate && most->surprise > 2) {  // a law that no named effect resembles
+    if (gate_ >= calibration_.gate &&
+        most->surprise > calibration_.smooth_surprise) {  // a law that no named effect resembles
         std::vector<double> left = null_innovations_;
         take_out(most->columns, left);
         gate_ = std::min(gate_, chance_in_noise(columns_of(probes_), left, most->surprise, 0));
@@ -164,11 +166,11 @@ MotionLoop::Rest MotionLoop::rest_beside(const FittedHypothesis& base, const Mot
     }
     std::sort(second.begin(), second.end(), [](const Probe* a, const Probe* b) { return a->surprise > b->surprise; });
     for (const Probe* probe : second) {
-        if (probe->surprise > 3) {
+        if (probe->surprise > calibration_.rest_surprise) {
             rest.second.push_back(probe->candidate);
         }
     }
-    if (most != nullptr && most->surprise > 3) {
+    if (most != nullptr && most->surprise > calibration_.rest_surprise) {
         rest.fit.variables = most->smooth->variables;
         rest.fit.gain = most->gain;
         rest.fit.degrees = static_cast<double>(most->columns.columns);
@@ -212,7 +214,7 @@ void MotionLoop::fit_further() {
         if (best == found.size()) {
             return;
         }
-        const double kin = one_kin(found[best].hypothesis.names) ? 3 : 1;
+        const double kin = one_kin(found[best].hypothesis.names) ? calibration_.kin_share : 1;
         const double gain = fitted_[base].score() - found[best].score();
         if (gain < calibration_.pair_gain || gain < kin * calibration_.pair_share * found[best].explained) {
             return;

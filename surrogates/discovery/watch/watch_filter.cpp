@@ -45,7 +45,7 @@ void WatchFilter::restart(double time, double gap) {
     memory_ = {};
 }
 
-/// Fourth order in time about the linearised equation.
+/// The step of discovery's filter (short_step()), with what forces and numbers that the model lacks do beside it.
 void WatchFilter::advance_part(double rest, double input) {
     while (rest > dynamics::same_instant) {
         double& h = state_[0];
@@ -61,20 +61,17 @@ void WatchFilter::advance_part(double rest, double input) {
             push_of_doubt[k] = doubted_[k]->acceleration(h, w, now, memory, unused) - declared;
             a += moved_[k] * push_of_doubt[k];
         }
-        const double stiffness = std::max(std::abs(slopes.velocity), std::sqrt(std::abs(slopes.gap)));
+        const double stiffness = stiffness_of(slopes);
         double dt = std::min(rest, longest_step);
         if (stiffness * dt > series_holds) {
             dt = std::min(rest, std::max(series_holds / stiffness, shortest_step));
         }
-        const double jerk = slopes.gap * w + slopes.velocity * a, snap = slopes.gap * a + slopes.velocity * jerk;
-        const double q = 0.5 * dt * dt;
-        Eigen::Matrix3d f = Eigen::Matrix3d::Zero();
-        f(0, 0) = 1 + q * slopes.gap;
-        f(0, 1) = dt + q * slopes.velocity;
-        f(1, 0) = dt * slopes.gap + q * slopes.gap * slopes.velocity;
-        f(1, 1) = std::max(0.0, 1 + dt * slopes.velocity + q * (slopes.gap + slopes.velocity * slopes.velocity));
-        f(2, 2) = noise_.slow > 0 ? std::exp(-dt / noise_.slow_time) : 0;
         const double along[watch_directions] = {1, w, std::tanh(w / motion_width), h - middle_, input};
+        const double before = w, q = 0.5 * dt * dt;
+        const HeaveTransition over = short_step(dt, a, slopes, h, w);
+        Eigen::Matrix3d f = Eigen::Matrix3d::Zero();
+        f.topLeftCorner<2, 2>() << over.hh, over.hw, over.wh, over.ww;
+        f(2, 2) = noise_.slow > 0 ? std::exp(-dt / noise_.slow_time) : 0;
         for (std::size_t j = 0; j < watch_directions; ++j) {
             const double push = along[j] / slopes.mass;
             deviations_[j] = f * deviations_[j] + Eigen::Vector3d(q * push, dt * push, 0);
@@ -85,9 +82,6 @@ void WatchFilter::advance_part(double rest, double input) {
         }
         kick_ = f * kick_;
         state_[2] *= f(2, 2);
-        const double before = w;
-        h += dt * (w + dt * (a / 2 + dt * (jerk / 6 + dt * snap / 24)));
-        w += dt * (a + dt * (jerk / 2 + dt * snap / 6));
         for (std::size_t i = 0; memory != nullptr && i < memory_.size(); ++i) {
             memory_[i] = (before + memory_[i]) * std::exp(-dynamics::history_kernel().rate[i] * dt) - before;
         }

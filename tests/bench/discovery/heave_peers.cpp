@@ -32,10 +32,9 @@ HeaveExperiment all_of(const dynamics::Model& model, const HeaveRecords& records
 }
 
 double error_of(const HeaveExperiment& test, const std::vector<dynamics::EffectUse>& uses, const HeaveNoise& noise) {
-    std::vector<double> square, count;
-    discovery::horizon_errors(test, uses, noise, 2, square, count);
-    return std::sqrt(std::accumulate(square.begin(), square.end(), 0.0) /
-                     std::accumulate(count.begin(), count.end(), 0.0));
+    const discovery::BlockSquares sums = discovery::window_errors(test, uses, noise, 2).by_record(test.chosen().size());
+    return std::sqrt(std::accumulate(sums.square.begin(), sums.square.end(), 0.0) /
+                     std::accumulate(sums.count.begin(), sums.count.end(), 0.0));
 }
 
 /// A force as a correction table over the variables of these numbers, on a grid between `low` and `high`.
