@@ -31,6 +31,8 @@ struct MeshQuality {
 /// above 70 degrees; none above 88.
 inline constexpr double largest_allowed_skewness = 4, largest_allowed_non_orthogonality = 1.536;
 
+/// `mesh` in m; `body_walls`: the patches that are the body, one at least, from which the wall distances are taken. A
+/// mesh that cannot be solved on is measured too: fault_of() says why.
 MeshQuality measure(const PolyMesh& mesh, const std::vector<std::string>& body_walls);
 /// Why a mesh cannot be solved on; empty when it can.
 std::string fault_of(const MeshQuality& quality);

@@ -17,6 +17,8 @@ MeshFormat mesh_format_of(const std::filesystem::path& path);
 /// one solid a patch, OBJ one group a patch, PLY (binary, double) an integer `patch`, VTP (binary appended, double) the
 /// cell array `patch` and a field array with the names.
 std::string mesh_bytes(const SurfaceMesh& mesh, MeshFormat format, double scale = 1);
+/// The same as a file, `mesh` in m; the format by the ending unless it is given. Throws core::UsageError (an unknown
+/// ending), core::SystemError (it cannot be written).
 void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, double scale = 1);
 void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format, double scale);
 

@@ -20,7 +20,8 @@ struct Placement {
     double roll = 0;   ///< rad, starboard down positive, about the centre of the base; pitch is applied after roll
 };
 
-/// Rotates about the centre of the base (the origin) and lifts by the gap: ground at z = 0.
+/// Rotates about the centre of the base (the origin) and lifts by the gap: ground at z = 0. Points in m, axes of the
+/// body (x forward, y to port, z up) and of the ground.
 Vec3 placed(const Vec3& point, const Placement& placement);
 SurfaceMesh placed(const SurfaceMesh& body, const Placement& placement);
 
@@ -30,6 +31,7 @@ struct Clearance {
     Vec3 where_on_body;   ///< the same in the axes of the body
     std::string patch;    ///< of a triangle that has it
 };
+/// `body` in m as made. Throws core::InputError for a mesh without triangles.
 Clearance clearance(const SurfaceMesh& body, const Placement& placement);
 
 /// Height of the lowest point of base, lower hull in the plane of symmetry, protrusion and tail plate over the ground,
@@ -51,6 +53,8 @@ struct AreaBelow {
     std::vector<double> height;  ///< m
     std::vector<double> area;    ///< m^2
 };
+/// At `points` heights (two at least), evenly from the ground to `up_to` in m. Every triangle that faces down counts,
+/// by its area as seen from below.
 AreaBelow underside_area(const SurfaceMesh& body, const Placement& placement, double up_to, std::size_t points = 400);
 core::Figure figure(const AreaBelow& below);
 /// Columns height [mm], area [cm^2].

@@ -26,6 +26,8 @@ struct Trim {
     /// N m, nose up, of weight and buoyancy at a pitch (roll 0): against the angle from the equilibrium.
     [[nodiscard]] double pitch_moment(double at_pitch) const;
 };
+/// `body`: volume, centroid and inertia of its surface; `loading`: what it weighs and where, in the same axes;
+/// `water_density` in kg/m^3. Throws core::InputError where nothing has a mass.
 Trim trim(const MassProperties& body, const Loading& loading, double water_density = default_water_density);
 
 /// Where the point mass `name` must lie (at its own height) for the wanted pitch and roll at rest.

@@ -300,10 +300,6 @@ Words words_of_exports(const ExportedFiles& files) {
     return words;
 }
 
-Words words_of_export(const std::string& file, const ExportRecord& record) {
-    return words_of_exports({{file, record}});
-}
-
 std::vector<Words> split_exports(const Words& words) {
     std::vector<Words> all(1);
     for (const auto& word : words) {

@@ -68,7 +68,6 @@ tables::ExportOptions options_of(const ExportRecord& record);
 using ExportedFiles = std::vector<std::pair<std::string, ExportRecord>>;  ///< by path
 /// `exported FILE TABLE KEY=VALUE ... [and FILE TABLE KEY=VALUE ...]`, as the action takes it.
 Words words_of_exports(const ExportedFiles& files);
-Words words_of_export(const std::string& file, const ExportRecord& record);
 /// The words of each file: FILE TABLE KEY=VALUE ...
 std::vector<Words> split_exports(const Words& words);
 

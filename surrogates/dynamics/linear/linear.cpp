@@ -233,20 +233,6 @@ SurfaceCoefficients surface_coefficients(const Model& model) {
             v.added_mass_surge - v.added_mass_sway, model.drag_surge.quadratic};
 }
 
-LinearSystem surface_system(const SurfaceCoefficients& c, double speed, double friction_force) {
-    LinearSystem system;
-    system.states = {"u", "v", "r", "psi"};
-    system.inputs = {"X", "Y", "N"};
-    system.a = Matrix{{-2 * c.drag_x * speed / c.mass_x, 0, 0, 0},
-                      {0, -friction_force / (speed * c.mass_y), -c.mass_x * speed / c.mass_y, 0},
-                      {0, c.munk * speed / c.inertia_r, 0, 0},
-                      {0, 0, 1, 0}};
-    system.b = Matrix{{1 / c.mass_x, 0, 0}, {0, 1 / c.mass_y, 0}, {0, 0, 1 / c.inertia_r}, {0, 0, 0}};
-    system.state_trim = {speed, 0, 0, 0};
-    system.input_trim = {c.drag_x * speed * speed + friction_force, 0, 0};
-    return system;
-}
-
 YawTransfer yaw_transfer(const SurfaceCoefficients& c, double speed, double friction_force, const EvieJets& jets) {
     const double cb = std::cos(jets.beta), sg = std::sin(jets.gamma), cg = std::cos(jets.gamma);
     YawTransfer transfer;

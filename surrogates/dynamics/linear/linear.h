@@ -69,7 +69,6 @@ struct SurfaceCoefficients {
 };
 /// Throws core::InputError when the model lacks the yaw inertia.
 SurfaceCoefficients surface_coefficients(const Model& model);
-LinearSystem surface_system(const SurfaceCoefficients& c, double speed, double friction_force);
 /// Yaw rate and thrust difference d = F1 - F2: A of (v, r), b = (sin(gamma) cos(beta)/S_y, -(L_tv cos(gamma) + L_tu
 /// sin(gamma)) cos(beta)/S_r).
 struct YawTransfer {

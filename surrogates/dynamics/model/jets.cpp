@@ -7,7 +7,7 @@
 
 namespace underbody::dynamics {
 
-constexpr double along_axis = 1e-12, in_plane = 1e-9;  ///< of a direction; m and of a direction: none to the side
+constexpr double in_plane = 1e-9;  ///< m and of a direction: none to the side
 
 Vector3 cross(const Vector3& a, const Vector3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -58,28 +58,6 @@ double munk_yaw_moment(double munk_coefficient, double speed, double sideslip) {
 double needed_yaw_torque(double munk_coefficient, double speed, double sideslip, double friction_force,
                          double friction_offset) {
     return std::abs(munk_yaw_moment(munk_coefficient, speed, sideslip)) + friction_force * friction_offset;
-}
-
-TurnAllocation allocate_turning(const EvieJets& l, double force_x, double force_y, double moment_z) {
-    const double cb = std::cos(l.beta), sg = std::sin(l.gamma), cg = std::cos(l.gamma);
-    if (std::abs(sg) < along_axis) {
-        throw core::InputError("range",
-                               "straight jets (gamma = 0) make no side force: the map from thrusts has rank 2");
-    }
-    const double x = force_x / (cg * cb), y = force_y / (sg * cb),
-                 z = moment_z / ((l.turn_y * cg + l.turn_x * sg) * cb);
-    TurnAllocation result;
-    const double parts[4] = {x + y - z, x - y + z, -x + y + z, -x - y - z};
-    double least = 0;
-    for (int i = 0; i < 4; ++i) {
-        result.thrust[i] = parts[i] / 4;
-        least = std::min(least, result.thrust[i]);
-    }
-    for (double& thrust : result.thrust) {
-        thrust -= least;
-    }
-    result.pressing_force = -4 * least * std::sin(l.beta);
-    return result;
 }
 
 namespace {
@@ -294,48 +272,6 @@ std::optional<EvieJets> turning_layout(std::span<const Jet> jets) {
     layout.maximum = aft->maximum;
     layout.lag = aft->lag;
     return layout;
-}
-
-int wrench_rank(std::span<const Jet> jets, const std::vector<int>& components, double tolerance) {
-    std::vector<std::vector<double>> rows;
-    for (const int component : components) {
-        std::vector<double> row;
-        for (const Jet& jet : jets) {
-            row.push_back(column(jet)[static_cast<std::size_t>(component)]);
-        }
-        rows.push_back(std::move(row));
-    }
-    // Gauss with full pivoting.
-    int rank = 0;
-    const std::size_t n = jets.size();
-    double first = 0;
-    for (std::size_t step = 0; step < rows.size(); ++step) {
-        std::size_t pi = step, pj = 0;
-        double best = 0;
-        for (std::size_t i = step; i < rows.size(); ++i) {
-            for (std::size_t j = 0; j < n; ++j) {
-                if (std::abs(rows[i][j]) > best) {
-                    best = std::abs(rows[i][j]);
-                    pi = i;
-                    pj = j;
-                }
-            }
-        }
-        first = step == 0 ? best : first;
-        if (best <= tolerance * first || best == 0) {
-            break;
-        }
-        std::swap(rows[step], rows[pi]);
-        ++rank;
-        for (std::size_t i = step + 1; i < rows.size(); ++i) {
-            const double factor = rows[i][pj] / rows[step][pj];
-            for (std::size_t j = 0; j < n; ++j) {
-                rows[i][j] -= factor * rows[step][j];
-            }
-            rows[i][pj] = 0;
-        }
-    }
-    return rank;
 }
 
 }  // namespace underbody::dynamics

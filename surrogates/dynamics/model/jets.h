@@ -44,14 +44,6 @@ double needed_yaw_torque(double munk_coefficient, double speed, double sideslip,
 /// Munk's moment in yaw, 1/2 C_mm U^2 sin(2 sideslip), C_mm = A_x - A_y.
 double munk_yaw_moment(double munk_coefficient, double speed, double sideslip);
 
-/// Thrusts of the turning jets (J1, J2, J5, J6) for (F_x, F_y, M_z): the exact inverse of docs/physics.md section 2.2,
-/// made non-negative by the null vector.
-struct TurnAllocation {
-    double thrust[4] = {};
-    double pressing_force = 0;  ///< F_z that the null vector costs, N (down)
-};
-TurnAllocation allocate_turning(const EvieJets& layout, double force_x, double force_y, double moment_z);
-
 /// The turning jets (J1, J2, J5, J6) of a list as angles and arms, from the one aft on starboard; nothing when the list
 /// has no pair aft or fore that pushes forward and to the side.
 std::optional<EvieJets> turning_layout(std::span<const Jet> jets);
@@ -66,8 +58,5 @@ struct Allocation {
 };
 Allocation allocate(std::span<const Jet> jets, const Wrench& wanted,
                     const std::array<double, 6>& weights = {1, 1, 1, 10, 10, 10});
-
-/// Rank of the map from thrusts to the named components (0..2 force, 3..5 moment).
-int wrench_rank(std::span<const Jet> jets, const std::vector<int>& components, double tolerance = 1e-10);
 
 }  // namespace underbody::dynamics

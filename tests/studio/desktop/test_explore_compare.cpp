@@ -430,7 +430,7 @@ TEST_F(Window, AStaleExportIsSaidAndMadeAgain) {
     record.made_of = table_digest(window_->desk().session(), "lift");
     record.name = "lift";
     core::write_file(file, "the old one");
-    window_->desk().act(words_of_export(file, record));
+    window_->desk().act(words_of_exports({{file, record}}));
     EXPECT_EQ(window_->desk().state().exports.at(file), record);
     EXPECT_TRUE(stale_exports(window_->desk().state(), window_->desk().session()).empty());
     window_->export_stale();

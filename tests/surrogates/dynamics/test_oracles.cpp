@@ -2,6 +2,8 @@
 // release, scaling.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/units.h"
@@ -71,25 +73,28 @@ TEST(Oracles, TurningJetsSpanSurgeSwayAndYaw) {
     EvieJets l = layout();
     std::vector<Jet> all = evie_jets(l);
     const std::vector<Jet> turning{all[0], all[1], all[4], all[5]};
-    EXPECT_EQ(wrench_rank(turning, {0, 1, 5}), 3);
+    EXPECT_EQ(test::rank_of(turning, {0, 1, 5}), 3);
     const Wrench null = jet_wrench(turning, std::vector<double>{1, 1, 1, 1});
     EXPECT_NEAR(null.force[0], 0, 1e-14);
     EXPECT_NEAR(null.force[1], 0, 1e-14);
     EXPECT_NEAR(null.moment[2], 0, 1e-14);
     l.gamma = 0;
     all = evie_jets(l);
-    EXPECT_EQ(wrench_rank(std::vector<Jet>{all[0], all[1], all[4], all[5]}, {0, 1, 5}), 2);
+    EXPECT_EQ(test::rank_of({all[0], all[1], all[4], all[5]}, {0, 1, 5}), 2);
     l = layout();
-    const TurnAllocation a = allocate_turning(l, 0.05, -0.02, 0.003);
-    all = evie_jets(l);
-    const Wrench w =
-        jet_wrench(std::vector<Jet>{all[0], all[1], all[4], all[5]}, std::vector<double>(a.thrust, a.thrust + 4));
-    EXPECT_NEAR(w.force[0], 0.05, 1e-12);
-    EXPECT_NEAR(w.force[1], -0.02, 1e-12);
-    EXPECT_NEAR(w.moment[2], 0.003, 1e-12);
-    for (const double thrust : a.thrust) {
-        EXPECT_GE(thrust, 0);
+    // The inverse in closed form (docs/physics.md section 2.2), with the least of the null vector that pulls on no jet.
+    const double cb = std::cos(l.beta), sg = std::sin(l.gamma), cg = std::cos(l.gamma);
+    const double x = 0.05 / (cg * cb), y = -0.02 / (sg * cb), z = 0.003 / ((l.turn_y * cg + l.turn_x * sg) * cb);
+    const std::array<double, 4> parts{(x + y - z) / 4, (x - y + z) / 4, (-x + y + z) / 4, (-x - y - z) / 4};
+    const double least = std::min(0.0, *std::min_element(parts.begin(), parts.end()));
+    Wrench asked;
+    asked.force = {0.05, -0.02, 0};
+    asked.moment = {0, 0, 0.003};
+    const Allocation closed = allocate(turning, asked, {1, 1, 0, 0, 0, 10});
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        EXPECT_NEAR(closed.thrust[i], parts[i] - least, 1e-5) << i;
     }
+    all = evie_jets(l);
     // With limits, by least squares over all nine jets.
     Wrench wanted;
     wanted.force = {0.04, 0.01, -0.02};
@@ -127,7 +132,7 @@ TEST(Oracles, InwardJetsGiveAMinimumPhaseZeroAndStraightOnesLoseAState) {
     for (const double friction : {0.0, 0.5}) {
         l.gamma = 0;
         const YawTransfer straight = yaw_transfer(c, .35, friction, l);
-        const LinearSystem full = surface_system(c, .35, friction);
+        const LinearSystem full = test::surface_system(c, .35, friction);
         LinearSystem system;
         system.a = Matrix(3, 3);
         for (std::size_t i = 0; i < 3; ++i) {
@@ -162,7 +167,7 @@ TEST(Oracles, HeadingGainsAreStableExactlyWithinTheirBounds) {
         const HeadingBounds bounds = heading_bounds(c, .35, friction);
         for (const double k1 : {0.0, 0.005, 0.03}) {
             for (const double k2 : {-0.01, 0.01, 0.05, 0.0556, 0.058, 0.2}) {
-                LinearSystem s = surface_system(c, .35, friction);
+                LinearSystem s = test::surface_system(c, .35, friction);
                 s.a(2, 2) -= k1 / c.inertia_r;
                 s.a(2, 3) -= k2 / c.inertia_r;
                 double worst = -1e300;
