@@ -6,6 +6,7 @@
 #include "cases/sweep.h"
 #include "core/file.h"
 #include "core/own_files.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/toml.h"
 
@@ -59,7 +60,6 @@ std::vector<double> times_of(const Study& study) {
             seconds.push_back(said["seconds"].get<double>());
         }
     }
-    std::sort(seconds.begin(), seconds.end());
     return seconds;
 }
 
@@ -127,7 +127,7 @@ AskedCfd ask_for_cfd(const Study& study, const geometry::BodyShape& shape, const
     const auto times = times_of(study);
     asked.solved = times.size();
     if (!times.empty()) {
-        asked.seconds = times[times.size() / 2] * static_cast<double>(asked.cases);
+        asked.seconds = core::median(times) * static_cast<double>(asked.cases);
     }
     return asked;
 }

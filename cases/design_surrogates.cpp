@@ -6,6 +6,7 @@
 #include "cases/design.h"
 #include "core/counted.h"
 #include "core/error.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -34,9 +35,8 @@ tables::Surrogate Design::surrogate(const std::string& quantity, core::Progress&
         }
     }
     const auto usual = [&](const std::string& fidelity) {
-        std::vector<double>& sigmas = stated[fidelity];
-        std::sort(sigmas.begin(), sigmas.end());
-        return sigmas.empty() ? 0.0 : sigmas[sigmas.size() / 2];  // the surrogate estimates a scatter as well
+        const std::vector<double>& sigmas = stated[fidelity];
+        return sigmas.empty() ? 0.0 : core::median(sigmas);  // the surrogate estimates a scatter as well
     };
     std::vector<tables::SearchRun> runs;
     for (const DesignRun& run : runs_) {

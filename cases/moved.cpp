@@ -5,13 +5,15 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "core/normal.h"
+
 namespace underbody::cases {
 
 using nlohmann::json;
 
 namespace {
 
-constexpr double beyond_sigmas = 2;
+using core::beyond_sigmas;
 constexpr double rounding = 1e-9;  ///< of the size
 const double unknown = std::nan("");
 

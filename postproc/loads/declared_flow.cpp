@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/water.h"
 #include "postproc/field/field.h"
@@ -99,10 +100,8 @@ WallPressures pressures_of(const Field& field, const LoadsResult& loads, const s
 }
 
 /// Pa: from the middle of the values to the highest.
-double above_the_middle(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *std::max_element(middle, values.end()) - *middle;
+double above_the_middle(const std::vector<double>& values) {
+    return *std::max_element(values.begin(), values.end()) - core::median(values);
 }
 
 /// What to ask of pressures that are `ratio` times those that belong to the speed.

@@ -277,7 +277,8 @@ int run_control(const ControlArguments& a, Shell& shell) {
     std::vector<std::string> warnings = show_table_warnings(shell, model, held);
     const SeparatedPlant plant = separate(model, held);
     shell.show(plant.remarks);
-    ControlLaw law = hold_at(option_value("--hold", a.hold, "m"), plant.virtual_mass, a.pole1, a.pole2);
+    const double hold = option_value("--hold", a.hold, "m");
+    ControlLaw law = hold_at(hold, plant.mass_at(hold), a.pole1, a.pole2);
     law.limit = quantity("--limit", a.limit, "N", INFINITY);
     const LoopOptions o = loop_options(a, law.reference_gap);
     std::vector<std::string> own;

@@ -249,6 +249,11 @@ void compare(const LearnArguments& a, const dynamics::Model& declared, const Sep
     }
 }
 
+/// kg, in the middle of the gaps: a linear law has one mass.
+double mass_within(const SeparatedPlant& plant, const TrainingOptions& training) {
+    return plant.mass_at(0.5 * (training.gap_lower + training.gap_upper));
+}
+
 TrainingSet samples_for(const LearnArguments& a, const dynamics::Model& declared, const SeparatedPlant& plant,
                         const TrainingOptions& training, const RunSplit& split, Shell& shell) {
     return a.data.empty() ? training_set(plant, training, shell.progress())
@@ -257,7 +262,7 @@ TrainingSet samples_for(const LearnArguments& a, const dynamics::Model& declared
 
 void learn_from_samples(const LearnArguments& a, const SeparatedPlant& plant, const TrainingOptions& training,
                         const Layout& layout, LearnOptions options, Learned& out) {
-    options.virtual_mass = plant.virtual_mass;
+    options.virtual_mass = mass_within(plant, training);
     if (options.offset == OffsetMode::equilibrium) {
         options.point = equilibrium_point(plant, layout, training.gap_lower, training.gap_upper);
     }
@@ -298,7 +303,7 @@ Learned learn_model(const LearnArguments& a, const dynamics::Model& declared, co
         a.data.empty() ? show_table_warnings(shell, declared, held) : show_table_warnings(shell, declared, split.train);
     out.held_at_reference = show_held_at_reference(shell, declared, held);
     if (has_forces(layout)) {
-        out.rows = heave_rows(layout, plant.virtual_mass, plant.bias);
+        out.rows = heave_rows(layout, mass_within(plant, training), plant.bias);
     }
     if (!a.moments_of.empty()) {
         if (by_snapshots(a) || !a.data.empty()) {

@@ -104,7 +104,7 @@ nlohmann::json system_json(const dynamics::LinearSystem& system, const std::vect
 }
 
 std::string mode_text(const dynamics::Mode& mode, const dynamics::ModeError& error = {}) {
-    constexpr double two_pi = 6.283185307179586;
+    constexpr double two_pi = 2 * std::numbers::pi;
     std::string text = "  " + mode.name + ": ";
     if (mode.value.imag() != 0) {
         text += core::format_number(mode.neutral ? 0 : mode.value.real(), 5) + " +- " +

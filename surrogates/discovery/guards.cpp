@@ -2,12 +2,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
 #include "core/no_limit.h"
+#include "core/normal.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/model/effect.h"
 
@@ -34,7 +34,7 @@ double least_fall_of_readings(const BlockSquares& before, const BlockSquares& af
         first += before.errors[i] * before.errors[i];
         left += e * e;
     }
-    const double times = boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+    const double times = core::normal_quantile(tail);
     // of squares to roots
     const double scale = std::sqrt(static_cast<double>(before.errors.size())) * (std::sqrt(first) + std::sqrt(left));
     return scale > 0 ? (fall - times * chance) / scale : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "surrogates/dynamics/plant/heave_terms.h"
@@ -531,7 +532,7 @@ std::vector<std::vector<double>> small_steps(const Hypothesis& h) {
     const std::vector<double> start = h.start();
     if (is_scanned(h)) {
         const double frequency = h.starts.empty() ? start[1] : h.starts.front()[1];
-        return {{1e-4, frequency, 0.0}, {1e-4, frequency, 1.5707963}};
+        return {{1e-4, frequency, 0.0}, {1e-4, frequency, std::numbers::pi / 2}};
     }
     std::vector<std::vector<double>> steps;
     const auto step = [&](std::size_t j, double from) {

@@ -6,8 +6,8 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
+#include "core/normal.h"
 #include "core/random.h"
-#include "surrogates/dynamics/simulate/sensor_noise.h"
 
 namespace underbody::discovery {
 
@@ -20,28 +20,6 @@ constexpr double no_separation = 1e-9;
 
 }  // namespace
 
-Interval wilson_interval(std::size_t successes, std::size_t trials) {
-    if (trials == 0) {
-        return {0, 1};
-    }
-    const double z = 1.959963984540054;
-    const double n = static_cast<double>(trials);
-    const double p = static_cast<double>(successes) / n;
-    const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
-    const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-    return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
-}
-
-double robust_sigma(const std::vector<double>& values) {
-    const double middle = median(values);
-    std::vector<double> distances;
-    distances.reserve(values.size());
-    for (const double value : values) {
-        distances.push_back(std::abs(value - middle));
-    }
-    return dynamics::sigma_of_median_distance * median(std::move(distances));
-}
-
 double mean(std::span<const double> values) {
     double sum = 0;
     for (const double value : values) {
@@ -51,11 +29,7 @@ double mean(std::span<const double> values) {
 }
 
 double root_mean_square(std::span<const double> values) {
-    double sum = 0;
-    for (const double value : values) {
-        sum += value * value;
-    }
-    return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+    return values.empty() ? 0 : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
 }
 
 double chi_squared_tail(double x, double dof) {
@@ -146,7 +120,7 @@ ErrorEstimate error_by_groups(const std::vector<double>& sum_of_squares, const s
     // few groups: the percentile interval is known to be short by sqrt((n-1)/n) and by t over z
     const double n = static_cast<double>(groups);
     const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1), beyond));
-    const double widen = std::sqrt(n / (n - 1)) * t / 1.959963984540054;
+    const double widen = std::sqrt(n / (n - 1)) * t / core::sigmas_of_95;
     const double centre = std::log(estimate.rmse);
     estimate.low = std::exp(centre + widen * (quantile(logs, beyond) - centre));
     estimate.high = std::exp(centre + widen * (quantile(logs, 1 - beyond) - centre));

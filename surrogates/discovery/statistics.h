@@ -10,19 +10,9 @@
 
 namespace underbody::discovery {
 
-struct Interval {
-    double low = 0;
-    double high = 0;
-};
-
-/// 95 % interval of a probability of which `successes` of `trials` were seen (Wilson 1927).
-Interval wilson_interval(std::size_t successes, std::size_t trials);
-
 using core::median;
 using core::quantile;
-/// sigma_of_median_distance times the median distance from the median: the standard deviation of normal values,
-/// deaf to outliers.
-double robust_sigma(const std::vector<double>& values);
+using core::robust_deviation;
 double mean(std::span<const double> values);
 double root_mean_square(std::span<const double> values);
 

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 namespace underbody::discovery {
 
 namespace {
 
 constexpr double highest_frequency = 4;  ///< Hz, of a periodic force that gap readings can show
-constexpr double two_pi = 6.283185307179586;
+constexpr double two_pi = 2 * std::numbers::pi;
 
 /// Peaks of the innovations' own periodogram: a line in the force is one in them too, as narrow as the runs are long.
 std::vector<double> peaks_of(const std::vector<SampledRun>& runs, const std::vector<double>& innovations,

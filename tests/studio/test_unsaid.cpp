@@ -174,10 +174,31 @@ TEST_F(Unsaid, PredictDoubtsADeclaredNoiseInTheWordsOfDiscover) {
     const auto found = run({"discover", "heave.toml", "--data", "swings", "--out", "found", "--candidates",
                             "constant_force", "--placebo", "0"});
     EXPECT_THAT(found.output, HasSubstr(doubt));
+    const auto estimated = run({"estimate", "heave.toml", "--data", "swings"});
+    EXPECT_THAT(estimated.output, HasSubstr(doubt));
+    const auto estimate = json::parse(run({"estimate", "heave.toml", "--data", "swings", "--json"}).output);
+    EXPECT_NEAR(estimate["noise"]["gap"]["value"].get<double>(), 2e-4, 2e-5);
     write_swings("[noise]\ngap = \"0.2 mm\"\n", false, false);
     const auto held = run({"predict", "heave.toml", "--data", "swings"});
     EXPECT_THAT(held.output, Not(HasSubstr("disagrees")));
     EXPECT_THAT(held.output, HasSubstr("times the declared noise"));
+}
+
+/// Every effect that acts on the input says so where no run has one, not only those whose name begins with it.
+TEST_F(Unsaid, AnEffectOnAnInputThatNoRunHasDoesNothing) {
+    write_swings("", false, false);
+    const std::string model = core::read_file(folder_.path() / "heave.toml");
+    for (const std::string effect : {"input_gain", "actuator_lag", "thrust_by_gap"}) {
+        const std::string number = effect == "input_gain"     ? "gain = 1.1"
+                                   : effect == "actuator_lag" ? "time_constant = \"0.1 s\""
+                                                              : "loss = 0.3";
+        core::write_file(folder_.path() / (effect + ".toml"),
+                         model + "[[effect]]\nname = \"" + effect + "\"\n" + number + "\n");
+        const auto predicted = run({"predict", effect + ".toml", "--data", "swings"});
+        EXPECT_THAT(predicted.output, HasSubstr("the model's " + effect + " acts on input_force, which no run has"))
+            << predicted.errors;
+    }
+    EXPECT_THAT(run({"predict", "heave.toml", "--data", "swings"}).output, Not(HasSubstr("which no run has")));
 }
 
 /// The scatter of coloured noise from reading to reading is a part of it: errors are told in what was declared, and by

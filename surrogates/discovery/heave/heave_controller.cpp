@@ -77,7 +77,7 @@ ControllerAnswer fit_controller(const HeaveRecords& records, const std::vector<s
             const double c = std::max(count[rows.record[i]], 1.0);
             left.push_back(rows.y[i] - sum_y[rows.record[i]] / c - best.dot(x_of(i) - sum[rows.record[i]] / c));
         }
-        const double sigma = robust_sigma(left);
+        const double sigma = robust_deviation(left);
         for (std::size_t i = 0; i < left.size(); ++i) {
             used[i] = std::abs(left[i]) <= far_off * sigma + 1e-12;
         }

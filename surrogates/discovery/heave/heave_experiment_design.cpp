@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/text.h"
 #include "surrogates/discovery/statistics.h"
@@ -51,7 +52,7 @@ std::vector<Trial> trials(const HeaveExperiment& experiment) {
                 const double t = 0.04 * k;
                 trial.time.push_back(t);
                 const double wave = frequency == 0 ? (static_cast<int>(t) % 2 == 0 ? 1.0 : -1.0)
-                                                   : std::sin(6.283185307179586 * frequency * t);
+                                                   : std::sin(2 * std::numbers::pi * frequency * t);
                 trial.input.push_back(holding + strength * wave);
             }
             list.push_back(std::move(trial));

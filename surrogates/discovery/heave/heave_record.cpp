@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "core/normal.h"
 #include "core/text.h"
 #include "surrogates/discovery/heave/heave_filter.h"
 #include "surrogates/discovery/statistics.h"
@@ -383,7 +384,7 @@ std::vector<double> lift_over_steps(const dynamics::Model& model, const dynamics
         std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(finite),
                      [](double x) { return std::isfinite(x); });
         const double middle = held.get(channel, 0);
-        if (finite.empty() || robust_sigma(finite) < 0.01 * std::abs(middle)) {
+        if (finite.empty() || robust_deviation(finite) < 0.01 * std::abs(middle)) {
             continue;
         }
         for (const dynamics::ForceSource& source : model.forces) {
@@ -438,10 +439,10 @@ void check_velocities(HeaveRecords& result, const dynamics::Measurements& data) 
         apart.push_back(std::abs(one - ratio));
     }
     // five standard errors of the runs' median, and never for a few hundredths; one or two runs show no scatter
-    const double tolerance =
-        ratios.size() < 3
-            ? 0.25
-            : std::max(0.05, 5 * 1.25 * 1.4826 * median(apart) / std::sqrt(static_cast<double>(ratios.size())));
+    const double tolerance = ratios.size() < 3
+                                 ? 0.25
+                                 : std::max(0.05, 5 * 1.25 * core::sigma_of_median_distance * median(apart) /
+                                                      std::sqrt(static_cast<double>(ratios.size())));
     std::string text;
     if (slope < -0.5 && slope > -2) {
         text = "heave_velocity has the opposite sign of the gap's changes (positive is up: it is turned round)";

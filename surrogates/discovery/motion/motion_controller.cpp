@@ -91,7 +91,7 @@ InputAnswer read_controller(const MotionRig& rig, const std::string& input) {
     const auto columns = static_cast<Eigen::Index>(changes.x.front().size());
     // A step of the set point goes on standing among the input's own changes before the next rows, where it would have
     // a pull of its own.
-    const double usual = robust_sigma(changes.y);
+    const double usual = robust_deviation(changes.y);
     std::vector<bool> quiet;
     for (std::size_t i = 0; i < changes.y.size(); ++i) {
         const std::vector<double>& x = changes.x[i];
@@ -107,7 +107,7 @@ InputAnswer read_controller(const MotionRig& rig, const std::string& input) {
         for (std::size_t i = 0; i < changes.y.size(); ++i) {
             error.push_back(changes.y[i] - best.dot(Eigen::Map<const Eigen::VectorXd>(changes.x[i].data(), columns)));
         }
-        const double sigma = robust_sigma(error);
+        const double sigma = robust_deviation(error);
         const std::vector<bool> before = used;
         for (std::size_t i = 0; i < error.size(); ++i) {
             used[i] = quiet[i] && std::abs(error[i]) <= far_off * sigma + 1e-12;

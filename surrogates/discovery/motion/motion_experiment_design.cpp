@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "core/text.h"
@@ -70,7 +71,7 @@ std::vector<MotionTrial> waves(const MotionRig& rig, const dynamics::MeasuredRun
             for (const double t : time) {
                 const double since = t - time.front();
                 const double wave = frequency == 0 ? (static_cast<long>(since) % 2 == 0 ? 1.0 : -1.0)
-                                                   : std::sin(6.283185307179586 * frequency * since);
+                                                   : std::sin(2 * std::numbers::pi * frequency * since);
                 trial.added.push_back(strength * wave);
             }
             list.push_back(std::move(trial));

@@ -376,7 +376,7 @@ core::Problems check_runs_agree(const StaticExperiment& experiment, const dynami
 }
 
 std::vector<std::size_t> accidents(const std::vector<double>& residuals) {
-    const double sigma = std::max(robust_sigma(residuals), 1e-300);
+    const double sigma = std::max(robust_deviation(residuals), 1e-300);
     std::vector<std::size_t> list;
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         if (std::abs(residuals[i]) > 6 * sigma) {

@@ -1,9 +1,10 @@
 #include "surrogates/discovery/watch/sequential_test.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "core/normal.h"
 
 namespace underbody::discovery {
 
@@ -24,8 +25,7 @@ double normal_of_t(double t, double degrees) {
     }
     const boost::math::students_t student(degrees);
     const double tail = boost::math::cdf(boost::math::complement(student, std::abs(t)));
-    const double size =
-        tail > least_tail ? boost::math::quantile(boost::math::complement(boost::math::normal(), tail)) : largest;
+    const double size = tail > least_tail ? core::normal_quantile(tail) : largest;
     return std::copysign(size, t);
 }
 

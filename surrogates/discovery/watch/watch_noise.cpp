@@ -4,6 +4,8 @@
 #include <functional>
 
 #include "core/no_limit.h"
+#include "core/normal.h"
+#include "core/quantile.h"
 #include "surrogates/discovery/watch/watch_residuals.h"
 
 namespace underbody::discovery {
@@ -34,9 +36,8 @@ double robust_variance(const std::vector<double>& values) {
     for (const double value : values) {
         sizes.push_back(std::abs(value));
     }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    const double scale = std::max(*middle / median_of_normal, least_scale), bound = widest * scale;
+    const double scale = std::max(core::sigma_of_median_distance * core::median(sizes), least_scale),
+                 bound = widest * scale;
     double sum = 0;
     for (const double size : sizes) {
         sum += std::min(size * size, bound * bound);

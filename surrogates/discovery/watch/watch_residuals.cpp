@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/normal.h"
+
 namespace underbody::discovery {
 
 namespace {
@@ -116,7 +118,8 @@ std::optional<WatchResidual> WatchResiduals::judge(std::size_t index, const Watc
         likelihood_->normals[index].push_back(innovation.normal);
         likelihood_->log_variances[index] += 2 * std::log(innovation.sigma);
         // a step of the stochastic search of the median
-        colour.scale *= std::abs(innovation.normal) > median_of_normal * colour.scale ? median_step : 1 / median_step;
+        colour.scale *=
+            core::sigma_of_median_distance * std::abs(innovation.normal) > colour.scale ? median_step : 1 / median_step;
     }
     if (wild) {
         used.slope = expected.slope;

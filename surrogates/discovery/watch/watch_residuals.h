@@ -13,9 +13,6 @@
 
 namespace underbody::discovery {
 
-/// Of the size of a standard normal number.
-inline constexpr double median_of_normal = 0.6745;
-
 /// The usual time between readings follows the last one, by a hundredth at most.
 inline void follow_step(double& usual, double dt) {
     constexpr double most = 0.01;

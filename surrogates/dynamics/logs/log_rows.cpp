@@ -56,14 +56,6 @@ void put_in_order(ChannelReadings& readings, const std::string& quantity, const 
     }
 }
 
-double usual_step(const std::vector<double>& time) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-        steps.push_back(time[i] - time[i - 1]);
-    }
-    return steps.empty() ? 0 : core::median(std::move(steps));
-}
-
 /// The times of the rows: every reading of gap and velocity, every change of a held input.
 std::vector<double> row_times(const LogChannels& channels, const std::vector<ChannelReadings>& readings) {
     std::vector<double> times;
@@ -74,7 +66,7 @@ std::vector<double> row_times(const LogChannels& channels, const std::vector<Cha
             times.insert(times.end(), readings[c].time.begin(), readings[c].time.end());
         }
         if (quantity == "gap" && !readings[c].time.empty()) {
-            step = usual_step(readings[c].time);
+            step = core::usual_step(readings[c].time);
             first = readings[c].time.front();
             last = readings[c].time.back();
         }
@@ -170,7 +162,7 @@ core::Table merged_piece(const std::string& log, const LogChannels& channels, st
     core::Table table;
     table.source = log;
     table.add_numbers("time", "s", rows);
-    const double tolerance = rows.size() > 1 ? 0.01 * usual_step(rows) : 0;
+    const double tolerance = rows.size() > 1 ? 0.01 * core::usual_step(rows) : 0;
     for (std::size_t c = 0; c < readings.size(); ++c) {
         const std::string& quantity = channels.channels[c].quantity;
         table.add_numbers(quantity, core::find_quantity(quantity)->unit,

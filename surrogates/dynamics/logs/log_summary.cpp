@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/no_limit.h"
+#include "core/quantile.h"
 
 namespace underbody::dynamics {
 
@@ -58,18 +59,10 @@ private:
         const auto [first, last] = std::minmax_element(times.begin(), times.end());
         summary.first = *first;
         summary.last = *last;
-        std::vector<double> steps;
-        for (std::size_t i = 1; i < times.size(); ++i) {
-            if (times[i] > times[i - 1]) {
-                steps.push_back(times[i] - times[i - 1]);
-            }
-        }
-        if (steps.empty()) {
+        const double usual = core::usual_step(times);
+        if (usual == 0) {
             return;
         }
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::nth_element(steps.begin(), middle, steps.end());
-        const double usual = *middle;
         summary.rate = 1 / usual;
         for (std::size_t i = 1; i < times.size(); ++i) {
             if (times[i] - times[i - 1] > 5 * usual) {

@@ -30,16 +30,6 @@ struct Piece {
     [[nodiscard]] std::size_t rows() const { return last - first; }
 };
 
-double usual_step(const std::vector<double>& time) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-        if (time[i] > time[i - 1]) {
-            steps.push_back(time[i] - time[i - 1]);
-        }
-    }
-    return steps.empty() ? 0 : core::median(std::move(steps));
-}
-
 std::vector<Piece> cut(const std::vector<double>& time, double usual, bool at_pauses) {
     const double pause = std::max(shortest_pause, steps_of_pause * usual);
     std::vector<Piece> pieces{{Cut::begin, 0, time.size()}};
@@ -159,7 +149,7 @@ void move_clock(MeasuredRun& run, double offset) {
 
 std::vector<MeasuredRun> pieces_of(const MeasuredRun& run, core::Problems& problems) {
     const std::vector<double>& time = run.table.numbers("time");
-    const double usual = usual_step(time);
+    const double usual = core::usual_step(time);
     std::vector<Piece> pieces = cut(time, usual, true);
     if (too_much_left_out(pieces)) {
         pieces = cut(time, usual, false);

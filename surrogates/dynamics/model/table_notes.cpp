@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/counted.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "surrogates/dynamics/model/effect.h"
@@ -140,10 +141,8 @@ core::Problems gaps_of_another_size(const Model& model) {
         if (column == nullptr || column->numbers.empty()) {
             continue;
         }
-        std::vector<double> gaps = column->numbers;
-        const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-        std::nth_element(gaps.begin(), middle, gaps.end());
-        if (*middle > far * model.vehicle.length) {
+        const std::vector<double>& gaps = column->numbers;
+        if (core::median(gaps) > far * model.vehicle.length) {
             const auto [low, high] = std::minmax_element(gaps.begin(), gaps.end());
             found.push_back({core::Problem::Severity::warning,
                              "the gaps of the " + source.quantity + " table " + source.table_file + ", " +

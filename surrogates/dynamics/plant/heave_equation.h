@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "surrogates/dynamics/model/channels.h"
 #include "surrogates/dynamics/plant/heave_terms.h"
@@ -93,7 +94,7 @@ inline void add_water_drag(const HeaveTerms& terms, double w, HeaveLoad& load) {
 template <bool Slopes = true>
 inline void add_guided_resistance(const HeaveTerms& terms, double h, double w, double variance, HeaveLoad& load) {
     if (terms.friction != 0) {
-        constexpr double half_pi = 1.5707963267948966;
+        constexpr double half_pi = std::numbers::pi / 2;
         const double width = terms.friction_width * terms.friction_width + half_pi * variance;
         const double root = std::sqrt(w * w + width);
         load.force -= terms.friction * w / root;
@@ -119,7 +120,7 @@ inline void add_guided_resistance(const HeaveTerms& terms, double h, double w, d
 }
 
 inline double timed_force(const HeaveTerms& terms, double t) {
-    constexpr double two_pi = 6.283185307179586;
+    constexpr double two_pi = 2 * std::numbers::pi;
     double force = terms.growth_of_force * t;
     for (const HeaveTerms::Wave& wave : terms.waves) {
         force += wave.amplitude * std::sin(two_pi * wave.frequency * t + wave.phase);

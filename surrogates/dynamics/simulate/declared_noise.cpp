@@ -10,9 +10,6 @@
 
 namespace underbody::dynamics {
 
-namespace {
-
-/// Middle of the runs' own; 0 where no run has readings enough.
 double scatter_of(const Model& model, const Measurements& data, const std::string& channel) {
     std::vector<double> each;
     for (const MeasuredRun& run : data.runs) {
@@ -32,8 +29,6 @@ double scatter_of(const Model& model, const Measurements& data, const std::strin
     }
     return each.empty() ? 0 : core::median(each);
 }
-
-}  // namespace
 
 std::optional<Measurements> without_doubtful_noise(const Model& model, const Measurements& data,
                                                    core::Problems& remarks) {

@@ -1,6 +1,7 @@
 #include "surrogates/dynamics/simulate/hold_with_jets.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "surrogates/dynamics/model/drag.h"
 #include "surrogates/dynamics/model/force_sources.h"
@@ -82,7 +83,7 @@ Wrench JetHold::wanted(const BodyState& y) const {
             trim_moment_ - hold_.pitch_gain * (y[state_theta] - *hold_.pitch) - hold_.pitch_rate_gain * y[state_q];
     }
     if (hold_.heading) {
-        const double error = std::remainder(*hold_.heading - y[state_psi], 6.283185307179586);
+        const double error = std::remainder(*hold_.heading - y[state_psi], 2 * std::numbers::pi);
         want.moment[2] = hold_.heading_gain * error - hold_.yaw_rate_gain * y[state_r];
     }
     return want;

@@ -11,6 +11,7 @@
 
 #include "core/counted.h"
 #include "core/parallel.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/dynamics/model/table_notes.h"
@@ -42,9 +43,7 @@ ChannelError error_of(const std::string& name, const std::string& unit, const Ch
         error.noise = *declared;
         error.noise_declared = true;
     } else if (!score.noises.empty()) {
-        std::vector<double> sorted = score.noises;
-        std::sort(sorted.begin(), sorted.end());
-        error.noise = sorted[sorted.size() / 2];
+        error.noise = core::median(score.noises);
     }
     error.in_noise = error.noise > 0 ? error.rmse / error.noise : 0.0;
     return error;
@@ -612,7 +611,9 @@ Prediction predict(const Model& model, const Measurements& data, const PredictOp
     const bool pushed =
         std::any_of(data.runs.begin(), data.runs.end(), [](const MeasuredRun& run) { return run.has("input_force"); });
     for (const EffectUse& use : model.effects) {
-        if (prediction.time_series && !pushed && (use.name.starts_with("input_") || use.name == "actuator_lag")) {
+        const std::vector<std::string>& acts_on = effect(use.name).info().depends_on;
+        if (prediction.time_series && !pushed &&
+            std::find(acts_on.begin(), acts_on.end(), channel_name(Channel::input_force)) != acts_on.end()) {
             prediction.remarks.push_back(
                 {core::Problem::Severity::warning,
                  "the model's " + use.name + " acts on input_force, which no run has: it does nothing here",

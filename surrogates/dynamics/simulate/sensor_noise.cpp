@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/quantile.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "core/units.h"
@@ -45,22 +46,6 @@ double reading_step(std::span<const double> values) {
 
 namespace {
 
-double middle_of(std::vector<double>& values) {
-    const auto half = static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), values.begin() + half, values.end());
-    const double upper = values[static_cast<std::size_t>(half)];
-    return values.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(values.begin(), values.begin() + half));
-}
-
-/// sigma_of_median_distance times the median distance from the median.
-double robust_deviation(std::vector<double> values) {
-    const double middle = middle_of(values);
-    for (double& value : values) {
-        value = std::abs(value - middle);
-    }
-    return sigma_of_median_distance * middle_of(values);
-}
-
 /// White noise out of differences of an order; NaN with fewer than six.
 double noise_by_differences(std::span<const double> time, std::span<const double> values, std::size_t order) {
     constexpr double uneven = 0.2;  // of a step in time
@@ -79,7 +64,7 @@ double noise_by_differences(std::span<const double> time, std::span<const double
     }
     // Of white noise they have 1 + 4 + 1 and 1 + 9 + 9 + 1 times its variance.
     return differences.size() < 6 ? std::numeric_limits<double>::quiet_NaN()
-                                  : robust_deviation(std::move(differences)) / std::sqrt(order == 2 ? 6.0 : 20.0);
+                                  : core::robust_deviation(std::move(differences)) / std::sqrt(order == 2 ? 6.0 : 20.0);
 }
 
 }  // namespace

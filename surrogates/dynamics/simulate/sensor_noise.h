@@ -7,8 +7,6 @@
 
 namespace underbody::dynamics {
 
-/// Standard deviation of normal numbers over the median of their distances from their median.
-constexpr double sigma_of_median_distance = 1.482602218505602;
 /// s: times that differ by less are one; a reading so late belongs to a window that ends with it.
 constexpr double same_instant = 1e-9, window_slack = 1e-6;
 

@@ -15,7 +15,7 @@ AugmentedModel learned_model(const SeparatedPlant& plant) {
     t.samples = 20000;
     const TrainingSet set = training_set(plant, t);
     return corrected(learn(moments(set.view()), set.layout), Correction::p3,
-                     heave_rows(set.layout, plant.virtual_mass, plant.bias));
+                     heave_rows(set.layout, plant.mass_at(0.5 * (t.gap_lower + t.gap_upper)), plant.bias));
 }
 
 // A departure that wanders by a third of the largest force in a second.

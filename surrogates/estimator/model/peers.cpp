@@ -27,7 +27,7 @@ double acceleration_of(const SeparatedPlant& plant, const TestMotion& m, std::si
     if (plant.other_force) {
         load.force += plant.other_force(0, m.gap[k], m.velocity[k], m.input[k]).force;
     }
-    const auto inertia = plant.inertia ? plant.inertia(m.gap[k]) : dynamics::HeaveInertia{plant.virtual_mass, 0, 0};
+    const auto inertia = plant.inertia_at(m.gap[k]);
     dynamics::HeaveSlopes unused;
     return dynamics::heave_acceleration(inertia, m.velocity[k], load, {}, unused);
 }

@@ -53,7 +53,7 @@ struct Smoothed {
 std::vector<Smoothed> smooth_runs(const dynamics::Model& model, const dynamics::Measurements& data,
                                   const EstimateOptions& options, core::Problems& remarks, core::Progress& progress) {
     std::vector<Prepared> runs = internal::prepare(model, data, remarks);
-    const FilterNoise noise = internal::noise_for(data, options, runs, remarks).noise;
+    const FilterNoise noise = internal::noise_for(model, data, options, runs, remarks).noise;
     std::vector<Smoothed> all;
     for (auto& run : runs) {
         progress.check();

@@ -348,7 +348,7 @@ AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velo
     DragSlopes drag_slopes;
     plant.ground_force(gap, ground_slope);
     plant.drag_force(gap, velocity, drag_slopes);
-    const double s = 1 / plant.virtual_mass, f = drag_slopes.velocity * s;
+    const double s = 1 / plant.mass_at(gap), f = drag_slopes.velocity * s;
     AugmentedModel model = AugmentedModel::from_matrices(
         Layout::heave(), Matrix{{0, 0, s, -s}, {1, 0, 0, 0}, {ground_slope, 0, 0, 0}, {0, 0, f, -f}},
         Matrix{{s}, {0}, {0}, {f}}, {plant.bias * s, 0, 0, f * plant.bias});
@@ -386,7 +386,7 @@ PlaneModel equivalent_model(const SeparatedPlant& plant, double gap, double velo
         work += weight * w * plant.drag(gap, w);
         square += weight * w * w;
     }
-    model.A(0, 0) = square > 0 ? -work / square / plant.virtual_mass : model.A(0, 0);
+    model.A(0, 0) = square > 0 ? -work / square / plant.mass_at(gap) : model.A(0, 0);
     return model;
 }
 

@@ -13,11 +13,8 @@
 
 namespace underbody::dynamics {
 struct Model;
-}  // namespace underbody::dynamics
-
-namespace underbody::dynamics {
 struct HeaveState;
-}
+}  // namespace underbody::dynamics
 
 namespace underbody::estimator {
 
@@ -49,6 +46,11 @@ struct SeparatedPlant {
     double lower = 0, upper = 1;                                    ///< gaps that the force table covers
     core::Problems remarks;                                         ///< what the separation leaves out
 
+    [[nodiscard]] dynamics::HeaveInertia inertia_at(double gap) const {
+        return inertia ? inertia(gap) : dynamics::HeaveInertia{virtual_mass, 0, 0};
+    }
+    /// kg, M(gap).
+    [[nodiscard]] double mass_at(double gap) const { return inertia_at(gap).mass; }
     [[nodiscard]] double acceleration(double gap, double velocity, double input, double time = 0) const {
         dynamics::HeaveSlopes slopes;
         return acceleration(gap, velocity, input, time, slopes);
@@ -134,9 +136,9 @@ AugmentedModel frozen_model(const SeparatedPlant& plant, double gap, double velo
 /// d(w, h) linear in (w, h): tangent at a point, or with equivalent drag damping for a root-mean-square velocity
 /// (Gaussian: sqrt(8/pi) D w_rms, sinusoid: 8 sqrt(2)/(3 pi) D w_rms; thesis 7.10 has factor 1). Offset included.
 struct PlaneModel {
-    Matrix A;  ///< 2 x 2 over (w, h)
-    Vector B;  ///< over the input
-    Vector offset;
+    Matrix A;       ///< 2 x 2 over (w, h): 1/s and 1/s^2, 1 and 0
+    Vector B;       ///< 2, over the input: 1/kg and 0
+    Vector offset;  ///< 2: m/s^2 and 0
 };
 PlaneModel tangent_model(const SeparatedPlant& plant, double gap, double velocity);
 enum class MotionShape { gaussian, sinusoid };

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/counted.h"
+#include "core/normal.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/measurements.h"
 #include "surrogates/estimator/observe/prepared_runs.h"
@@ -82,8 +84,8 @@ core::Figure forces_figure(const Columns& c, const std::string& run) {
             curve.x.push_back(c.time[i]);
             curve.y.push_back(1e3 * value[i]);
             band.x.push_back(c.time[i]);
-            band.lower.push_back(1e3 * (value[i] - 1.96 * sigma[i]));
-            band.upper.push_back(1e3 * (value[i] + 1.96 * sigma[i]));
+            band.lower.push_back(1e3 * (value[i] - core::sigmas_of_95 * sigma[i]));
+            band.upper.push_back(1e3 * (value[i] + core::sigmas_of_95 * sigma[i]));
         }
         f.bands.push_back(band);
         f.curves.push_back(curve);
@@ -157,8 +159,9 @@ AugmentedModel linear_model(const std::vector<Prepared>& runs, const EstimateOpt
     l.order = o.order;
     l.fit = o.order > 0 ? Fit::method2 : Fit::least_squares;
     const Moments m = moments(set.view());
+    const double middle = 0.5 * (t.gap_lower + t.gap_upper);
     AugmentedModel model =
-        corrected(learn(m, set.layout, l), Correction::p2, heave_rows(set.layout, plant.virtual_mass, plant.bias));
+        corrected(learn(m, set.layout, l), Correction::p2, heave_rows(set.layout, plant.mass_at(middle), plant.bias));
     return model;
 }
 
@@ -191,8 +194,9 @@ ObserverDesign design_linear(const AugmentedModel& model, const std::vector<Prep
         return reduced_observer(model, reduced_gain(model, o.poles), step);
     }
     if (o.observer == "disturbance") {
-        return disturbance_observer(runs.front().plant.virtual_mass, runs.front().plant.bias, -o.poles.front().real(),
-                                    step);
+        const SeparatedPlant& plant = runs.front().plant;
+        const double middle = model.mean[2];  // gap of the region that the model was learned in
+        return disturbance_observer(plant.mass_at(middle), plant.bias, -o.poles.front().real(), step);
     }
     if (o.observer == "full") {
         return full_observer(model, sensors, full_gain(model, sensors, stretched(o.poles, 4)), step);
@@ -320,8 +324,7 @@ double common_step(const std::vector<Prepared>& runs) {
     for (const auto& r : runs) {
         steps.push_back(usual_step(r.signals));
     }
-    std::sort(steps.begin(), steps.end());
-    return steps[steps.size() / 2];
+    return core::median(std::move(steps));
 }
 
 bool differs(const SeparatedPlant& a, const SeparatedPlant& b) {
@@ -456,7 +459,7 @@ Estimation estimate(const dynamics::Model& model, const dynamics::Measurements& 
     Estimation out;
     out.observer = options.observer;
     std::vector<Prepared> runs = prepare(model, data, out.remarks);
-    const internal::NoiseChoice choice = noise_for(data, options, runs, out.remarks);
+    const internal::NoiseChoice choice = noise_for(model, data, options, runs, out.remarks);
     out.noise = choice.noise;
     out.gap_noise_declared = choice.gap_declared;
     out.density_chosen = choice.density_chosen;

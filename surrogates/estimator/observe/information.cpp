@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core/normal.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/text.h"
@@ -52,7 +53,7 @@ double deviation_along(const Matrix& p, const Vector& g) {
 }
 
 Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double gap, double speed) {
-    const double omega = 2 * std::numbers::pi / o.window, s = 1 / plant.virtual_mass, dt = o.sample_step;
+    const double omega = 2 * std::numbers::pi / o.window, dt = o.sample_step;
     const double largest = largest_ground_force(plant);
     Matrix p = Matrix::diagonal({1e-2, 1e-2, largest * largest, o.drag_prior * o.drag_prior});
     const auto steps = static_cast<std::size_t>(std::round(o.window / dt));
@@ -63,6 +64,9 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
         const double h = gap + speed / omega * std::sin(omega * t), w = speed * std::cos(omega * t);
         plant.ground_force(h, ground_slope);
         drag = plant.drag_force(h, w, drag_slopes);
+        dynamics::HeaveSlopes slopes;
+        plant.acceleration(h, w, 0, 0, slopes);
+        const double s = 1 / slopes.mass;
         take_reading(p, 0, o.noise.gap);
         if (o.noise.velocity > 0) {
             take_reading(p, 1, o.noise.velocity);
@@ -71,7 +75,7 @@ Bound bound_at(const SeparatedPlant& plant, const InformationOptions& o, double 
             break;
         }
         const Matrix a{{0, 1, 0, 0},
-                       {(ground_slope - drag_slopes.gap) * s, -drag_slopes.velocity * s, s, -drag * s},
+                       {slopes.gap, slopes.velocity, s, -drag * s},
                        {0, 0, o.noise.force_time > 0 ? -1 / o.noise.force_time : 0, 0},
                        {0, 0, 0, 0}};
         const Matrix phi = Matrix::identity(4) + dt * a + (0.5 * dt * dt) * (a * a);
@@ -231,16 +235,14 @@ ObservabilityAlongGap observability_along_gap(const SeparatedPlant& plant, const
     ObservabilityAlongGap result;
     result.gaps = gaps;
     for (const double h : gaps) {
-        double slope = 0;
-        DragSlopes drag_slopes;
-        plant.ground_force(h, slope);
-        plant.drag_force(h, 0.01, drag_slopes);
-        const double s = 1 / plant.virtual_mass;
+        constexpr double slow = 0.01;  // m/s
+        dynamics::HeaveSlopes slopes;
+        plant.acceleration(h, slow, 0, 0, slopes);
         const Observability o =
-            observability(Matrix{{0, 1, 0}, {(slope - drag_slopes.gap) * s, -drag_slopes.velocity * s, s}, {0, 0, 0}},
+            observability(Matrix{{0, 1, 0}, {slopes.gap, slopes.velocity, 1 / slopes.mass}, {0, 0, 0}},
                           Matrix{{1, 0, 0}}, {0.1, 0.01, 0.01});
         result.smallest_singular_value.push_back(o.singular_values.back() / o.singular_values.front());
-        const AugmentedModel frozen = frozen_model(plant, h, 0.01);
+        const AugmentedModel frozen = frozen_model(plant, h, slow);
         result.separate_rank.push_back(observability(frozen.j_zeta(), frozen.a_zeta()).rank);
     }
     return result;
@@ -293,7 +295,8 @@ Trial consistency_trial(const SeparatedPlant& plant, const ConsistencyOptions& o
     const Vector solved = solve(p, error);
     const double force = plant.ground_force(truth[0], slope) + truth[2];
     return {error[0] * solved[0] + error[1] * solved[1] + error[2] * solved[2],
-            std::abs(force - e.ground_force) < 1.96 * e.ground_sigma ? 1.0 : 0.0, r.mean_squared_innovation};
+            std::abs(force - e.ground_force) < core::sigmas_of_95 * e.ground_sigma ? 1.0 : 0.0,
+            r.mean_squared_innovation};
 }
 
 }  // namespace
@@ -328,7 +331,7 @@ Consistency consistency_along_gap(const SeparatedPlant& plant, const Consistency
         c.innovation[i / options.runs] += trials[i].innovation * share;
     }
     const double spread =
-        1.96 * std::sqrt(6.0 / static_cast<double>(options.runs));  // variance of chi-square with 3: 6
+        core::sigmas_of_95 * std::sqrt(6.0 / static_cast<double>(options.runs));  // variance of chi-square with 3: 6
     c.lower = 3 - spread;
     c.upper = 3 + spread;
     for (const double v : c.nees) {

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "core/counted.h"
+#include "core/quantile.h"
 #include "core/text.h"
 #include "surrogates/dynamics/model/taken_as_zero.h"
 #include "surrogates/dynamics/simulate/clean_readings.h"
+#include "surrogates/dynamics/simulate/declared_noise.h"
 #include "surrogates/dynamics/simulate/doubtful_clock.h"
 #include "surrogates/dynamics/simulate/predict.h"
 #include "surrogates/dynamics/simulate/read_records.h"
@@ -47,29 +49,26 @@ SeparatedPlant plant_of(const dynamics::Model& model, const dynamics::RecordRead
     return plant;
 }
 
-double noise_or_estimate(const dynamics::Measurements& data, const std::string& channel, double given, bool& declared) {
+/// Given, declared, or what the readings scatter by where nothing is declared or they contradict it, as in predictions
+/// and discovery; 0 where nothing says it.
+double noise_of_channel(const dynamics::Model& model, const dynamics::Measurements& data, const std::string& channel,
+                        double given, bool& declared, core::Problems& remarks) {
     declared = true;
     if (given > 0) {
         return given;
     }
-    if (const auto noise = data.declared_noise(channel)) {
-        return *noise;
-    }
-    declared = false;
-    std::vector<double> each;
-    for (const auto& run : data.runs) {
-        if (run.has(channel)) {
-            const double sigma = dynamics::sensor_noise(run.table.numbers("time"), run.values(channel));
-            if (sigma > 0) {
-                each.push_back(sigma);
-            }
-        }
-    }
-    if (each.empty()) {
+    const std::optional<double> stated = data.declared_noise(channel);
+    const double scatter = dynamics::scatter_of(model, data, channel);
+    if (!stated && !(scatter > 0)) {
+        declared = false;
         return 0;
     }
-    std::nth_element(each.begin(), each.begin() + static_cast<std::ptrdiff_t>(each.size() / 2), each.end());
-    return each[each.size() / 2];
+    const dynamics::JudgedNoise judged = dynamics::judged_noise(channel, stated, scatter);
+    declared = stated && judged.value == *stated;
+    if (!judged.doubt.empty()) {
+        note(remarks, judged.doubt);
+    }
+    return judged.value;
 }
 
 }  // namespace
@@ -113,14 +112,15 @@ std::vector<Prepared> prepare(const dynamics::Model& model, const dynamics::Meas
     return all;
 }
 
-NoiseChoice noise_for(const dynamics::Measurements& data, const EstimateOptions& o, const std::vector<Prepared>& runs,
-                      core::Problems& remarks) {
+NoiseChoice noise_for(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& o,
+                      const std::vector<Prepared>& runs, core::Problems& remarks) {
     NoiseChoice choice;
     FilterNoise& noise = choice.noise;
     bool declared = false;
-    noise.gap = noise_or_estimate(data, "gap", o.gap_sigma, choice.gap_declared);
-    noise.velocity =
-        data.all_have("heave_velocity") ? noise_or_estimate(data, "heave_velocity", o.velocity_sigma, declared) : 0;
+    noise.gap = noise_of_channel(model, data, "gap", o.gap_sigma, choice.gap_declared, remarks);
+    if (data.all_have("heave_velocity")) {
+        noise.velocity = noise_of_channel(model, data, "heave_velocity", o.velocity_sigma, declared, remarks);
+    }
     if (!(noise.gap > 0)) {
         double size = 0;
         for (const auto& r : runs) {
@@ -195,15 +195,10 @@ RunSignals signals_of_run(const dynamics::MeasuredRun& run, core::Problems& rema
 }
 
 double usual_step(const RunSignals& run) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < run.time.size(); ++i) {
-        steps.push_back(run.time[i] - run.time[i - 1]);
-    }
-    if (steps.empty()) {
+    if (run.time.size() < 2) {
         throw core::InputError("few", "a run needs at least two samples");
     }
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-    return steps[steps.size() / 2];
+    return core::usual_step(run.time);
 }
 
 namespace {

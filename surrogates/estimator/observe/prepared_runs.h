@@ -28,8 +28,9 @@ struct NoiseChoice {
     FilterNoise noise;
     bool gap_declared = false, density_chosen = false;
 };
-/// Declared, given, or estimated from the data; the force density the likeliest unless given.
-NoiseChoice noise_for(const dynamics::Measurements& data, const EstimateOptions& options,
+/// Given, declared unless the readings contradict it (dynamics::judged_noise()), or estimated from them; the force
+/// density the likeliest unless given.
+NoiseChoice noise_for(const dynamics::Model& model, const dynamics::Measurements& data, const EstimateOptions& options,
                       const std::vector<Prepared>& runs, core::Problems& remarks);
 
 }  // namespace underbody::estimator::internal

@@ -21,8 +21,7 @@ double SeparatedPlant::acceleration(double gap, double velocity, double input, d
         load.slope_h += other.slope_h;
         load.slope_w += other.slope_w;
     }
-    return dynamics::heave_acceleration(inertia ? inertia(gap) : dynamics::HeaveInertia{virtual_mass, 0, 0}, velocity,
-                                        load, {}, slopes);
+    return dynamics::heave_acceleration(inertia_at(gap), velocity, load, {}, slopes);
 }
 
 namespace {

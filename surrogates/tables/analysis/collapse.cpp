@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/no_limit.h"
+#include "core/normal.h"
 #include "core/text.h"
 #include "core/told.h"
 #include "core/units.h"
@@ -161,7 +162,7 @@ std::vector<std::pair<double, double>> ranges_beyond(std::vector<std::pair<doubl
     std::vector<std::pair<double, double>> ranges;
     bool open = false;
     for (const auto& [x, deviation] : deviations) {
-        const bool beyond = std::abs(deviation) > 2;
+        const bool beyond = std::abs(deviation) > core::beyond_sigmas;
         if (beyond && !open) {
             ranges.emplace_back(x, x);
         } else if (beyond) {
@@ -211,8 +212,8 @@ struct Against {
 };
 
 void count_deviation(double gap, double deviation, CollapseGroup& group, Against& sum) {
-    sum.beyond += std::abs(deviation) > 2 ? 1 : 0;
-    sum.far_beyond += std::abs(deviation) > 4 ? 1 : 0;
+    sum.beyond += std::abs(deviation) > core::beyond_sigmas ? 1 : 0;
+    sum.far_beyond += std::abs(deviation) > 2 * core::beyond_sigmas ? 1 : 0;
     if (std::abs(deviation) >= std::abs(group.worst)) {
         group.worst = deviation;
         group.worst_gap = gap;

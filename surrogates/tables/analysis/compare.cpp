@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/normal.h"
 #include "surrogates/tables/analysis/figures.h"
 #include "surrogates/tables/fit/force_table_impl.h"
 
@@ -117,7 +118,7 @@ Difference difference(const std::string& a_name, Slice a, const std::string& b_n
             d.at = x;
             d.sigma = known ? joint : std::nan("");
         }
-        const bool beyond = known && std::abs(gap) > 2 * joint;
+        const bool beyond = known && core::beyond_joint_error(gap, sa, sb);
         if (beyond && !open) {
             d.beyond_error.emplace_back(x, x);
         } else if (beyond) {
@@ -196,8 +197,8 @@ void choose_winner(Comparison& result, Measure measure, const std::vector<std::p
         result.errors_known =
             std::all_of(tables.begin(), tables.end(), [](const auto& table) { return states_errors(table.second); });
         result.beyond_error =
-            result.errors_known && std::abs(result.values[order[0]] - result.values[order[1]]) >
-                                       2 * std::hypot(result.errors[order[0]], result.errors[order[1]]);
+            result.errors_known && core::beyond_joint_error(result.values[order[0]] - result.values[order[1]],
+                                                            result.errors[order[0]], result.errors[order[1]]);
     }
 }
 

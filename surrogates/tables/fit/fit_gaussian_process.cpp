@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/no_limit.h"
+#include "core/normal.h"
 #include "core/text.h"
 #include "surrogates/tables/fit/fit.h"
 #include "surrogates/tables/fit/force_table_impl.h"
@@ -172,12 +173,6 @@ ProcessMixture mixture_of(const SetPoints& points, std::vector<ProcessCandidate>
     return mixture;
 }
 
-/// Upper normal quantile of a probability below one half (Abramowitz and Stegun 26.2.23).
-double normal_quantile(double beyond) {
-    const double t = std::sqrt(-2 * std::log(beyond));
-    return t - (2.515517 + t * (0.802853 + 0.010328 * t)) / (1 + t * (1.432788 + t * (0.189269 + 0.001308 * t)));
-}
-
 /// How wide the error of a table of two and more axes is left, set with the forces of
 /// tests/surrogates/tables/calibration.h, seeds 0 to 59 (November 2026): without it 70 to 80 % of the places lie within
 /// one standard deviation, with it 66 to 76 %.
@@ -257,7 +252,7 @@ void widen(ProcessMixture& mixture, const SetPoints& points, const ProcessMixtur
     std::sort(judged.begin(), judged.end());
     const std::size_t rank = std::min(n, static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(n + 1))));
     const double usual =
-        normal_quantile(0.5 * (1 - (static_cast<double>(rank) - 0.3) / (static_cast<double>(n) + 0.4)));
+        core::normal_quantile(0.5 * (1 - (static_cast<double>(rank) - 0.3) / (static_cast<double>(n) + 0.4)));
     // Less than half of what it lacks: of few points the largest miss says little about the next one.
     const double tail = 0.6 + 0.4 * std::max(1.0, judged[rank - 1] / (1.05 * usual));
     // Over several axes forces are smoother than a Matern process expects, and the stated noise hides it from the

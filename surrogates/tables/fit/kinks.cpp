@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/counted.h"
+#include "core/normal.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "surrogates/tables/fit/fit.h"
@@ -55,7 +56,7 @@ core::Problems kinks(const SetPoints& points) {
             const bool left_is_less = std::abs(left) < std::abs(right);
             const double joint = std::hypot(points.sigma[here], points.sigma[left_is_less ? before : after]);
             const double height = std::min(std::abs(left), std::abs(right));
-            if (height >= 2 * joint) {
+            if (height >= core::beyond_sigmas * joint) {
                 continue;
             }
             if (++count <= most) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/normal.h"
 
 namespace underbody::tables {
 
@@ -242,16 +243,15 @@ void Surrogate::check_left_out(core::Progress& progress) {
     check_.points = error.size();
     std::size_t inside = 0;
     for (std::size_t i = 0; i < error.size(); ++i) {
-        inside += std::abs(error[i]) <= 1.96 * error_factor_ * sigma[i] ? 1 : 0;
+        inside += std::abs(error[i]) <= core::sigmas_of_95 * error_factor_ * sigma[i] ? 1 : 0;
         check_.sigma.push_back(error_factor_ * spread_ * sigma[i]);
     }
     const auto count = static_cast<double>(error.size());
     check_.inside_95 = static_cast<double>(inside) / count;
-    const double shapes = static_cast<double>(check_.shapes), z2 = 1.96 * 1.96, p = check_.inside_95;
-    const double middle = (p + z2 / (2 * shapes)) / (1 + z2 / shapes);
-    const double half = 1.96 / (1 + z2 / shapes) * std::sqrt((p * (1 - p) + z2 / (4 * shapes)) / shapes);
-    check_.inside_lower = std::max(0.0, middle - half);
-    check_.inside_upper = std::min(1.0, middle + half);
+    const auto shapes = static_cast<double>(check_.shapes);
+    const core::Interval sure = core::wilson_interval(check_.inside_95 * shapes, shapes);
+    check_.inside_lower = sure.low;
+    check_.inside_upper = sure.high;
     check_.root_mean_square = spread_ * std::sqrt(own / count);
     check_.nearest_shape = spread_ * std::sqrt(nearest / count);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/normal.h"
 #include "surrogates/discovery/discovery.h"
 #include "surrogates/discovery/statistics.h"
 #include "surrogates/dynamics/simulate/predict.h"
@@ -130,7 +131,8 @@ int judge(const std::vector<Kind<Rig>>& kinds, const dynamics::Model& model, con
         if (!asked.write.empty()) {
             continue;
         }
-        const discovery::Interval interval = discovery::wilson_interval(right, asked.seeds);
+        const core::Interval interval =
+            core::wilson_interval(static_cast<double>(right), static_cast<double>(asked.seeds));
         std::printf(
             "%s, colour %g: %zu of %zu right or tied (%.2f to %.2f), %zu tied, %zu silent, %zu unknown, fresh runs "
             "worse "

@@ -189,7 +189,8 @@ int carry_out(const dynamics::Model& model, const bench::MotionOptions& asked) {
         std::printf("    %s\n", before.next_experiment.c_str());
         std::fflush(stdout);
     }
-    const discovery::Interval interval = discovery::wilson_interval(settled, std::max<std::size_t>(done, 1));
+    const core::Interval interval =
+        core::wilson_interval(static_cast<double>(settled), static_cast<double>(std::max<std::size_t>(done, 1)));
     std::printf("%zu experiments: promised %.1f +- %.1f, settled %zu (%.2f to %.2f of all), for the other %zu\n", done,
                 promised, std::sqrt(promised_spread), settled, interval.low, interval.high, wrong);
     return 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/normal.h"
 #include "surrogates/discovery/statistics.h"
 
 namespace underbody::bench {
@@ -91,7 +92,7 @@ Outcome outcome_of(const discovery::Discovery& found, const std::vector<std::str
 }
 
 std::string share(std::size_t of, std::size_t all) {
-    const discovery::Interval w = discovery::wilson_interval(of, all);
+    const core::Interval w = core::wilson_interval(static_cast<double>(of), static_cast<double>(all));
     return text("%zu/%zu %.2f (%.2f-%.2f)", of, all, all > 0 ? static_cast<double>(of) / static_cast<double>(all) : 0.0,
                 w.low, w.high);
 }

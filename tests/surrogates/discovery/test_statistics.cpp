@@ -12,13 +12,6 @@
 using namespace underbody;
 using namespace underbody::discovery;
 
-TEST(Statistics, WilsonIntervalAgreesWithItsFormula) {
-    const Interval i = wilson_interval(8, 10);
-    EXPECT_NEAR(i.low, 0.4901625, 1e-6);  // Wilson 1927, computed by hand
-    EXPECT_NEAR(i.high, 0.9433178, 1e-6);
-    EXPECT_DOUBLE_EQ(wilson_interval(0, 0).high, 1);
-}
-
 TEST(Statistics, NoiseOfASmoothSignalIsFoundDespiteOutliers) {
     core::Random random(3);
     std::vector<double> y;

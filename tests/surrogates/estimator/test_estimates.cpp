@@ -263,6 +263,27 @@ TEST(Predictions, ThePlantHasNoErrorWhereItsMassGrowsTowardTheGround) {
     EXPECT_LT(errors.back().gap, 1e-12);
 }
 
+// What the sensors can know, and the plant's own linearisation, were those of the mass far from the ground.
+TEST(InformationAlongTheGap, IsThatOfTheMassAtTheGap) {
+    SeparatedPlant grown = reference_plant(quadratic_drag(.02, 6)), heavy = grown;
+    grown.inertia = [mass = grown.virtual_mass](double) { return dynamics::HeaveInertia{3 * mass, 0, 0}; };
+    heavy.virtual_mass *= 3;
+    InformationOptions o;
+    o.gaps = {0.03, 0.3};
+    o.speeds = {0, 0.03};
+    o.noise.force_density = 1e-8;
+    const InformationMap a = information_along_gap(grown, o), b = information_along_gap(heavy, o);
+    for (std::size_t i = 0; i < a.total_sigma.size(); ++i) {
+        EXPECT_NEAR(a.total_sigma[i], b.total_sigma[i], 1e-12 * b.total_sigma[i]) << i;
+        EXPECT_NEAR(a.ground_sigma[i], b.ground_sigma[i], 1e-12 * b.ground_sigma[i]) << i;
+    }
+    EXPECT_DOUBLE_EQ(observability_along_gap(grown, {0.05}).smallest_singular_value[0],
+                     observability_along_gap(heavy, {0.05}).smallest_singular_value[0]);
+    EXPECT_DOUBLE_EQ(frozen_model(grown, 0.1, 0.01).A(0, 2), 1 / heavy.virtual_mass);
+    EXPECT_DOUBLE_EQ(equivalent_model(grown, 0.1, 0.01, MotionShape::gaussian).A(0, 0),
+                     equivalent_model(heavy, 0.1, 0.01, MotionShape::gaussian).A(0, 0));
+}
+
 TEST(DynamicModeDecomposition, PredictsBetterWithADictionary) {
     const SeparatedPlant plant = reference_plant();
     TrainingOptions o;
