@@ -37,7 +37,8 @@ FirstPage::FirstPage(QWidget* parent) : QWidget(parent) {
     middle->addLayout(grid_);
     middle->addStretch(1);
     column->addLayout(middle);
-    auto* drop = new QLabel("Drop a study, CFD files or a SHAPE.toml here, or open a study with Ctrl+O, files with Ctrl+Shift+O");
+    auto* drop = new QLabel(
+        "Drop a study, CFD files or a SHAPE.toml here, or open a study with Ctrl+O, files with Ctrl+Shift+O");
     drop->setAlignment(Qt::AlignCenter);
     drop->setMargin(26);
     drop->setFrameShape(QFrame::StyledPanel);

@@ -46,7 +46,7 @@ bool set_reading(FileReading& reading, const std::string& word) {
         reading.length_unit = checked_unit(text, "m");
     } else if (key == "symmetry") {
         static_cast<void>(postproc::mirror_plane_from(text));  // says what is wrong with it
-        reading.symmetry = text;  // "none": whole, whatever the study says
+        reading.symmetry = text;                               // "none": whole, whatever the study says
     } else if (key == "density") {
         reading.density = number_or_none(text, "kg/m^3");
         if (reading.density && !(*reading.density > 0)) {
