@@ -4,6 +4,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <algorithm>
 #include <cmath>
 
@@ -89,7 +90,8 @@ void ExplorePanel::type_brush() {
     }
     brush_->setModified(false);
     Words words = {"brush"};
-    for (const auto& part : brush_->text().split(',', Qt::SkipEmptyParts)) {
+    static const QRegularExpression between(R"(,|\s+(?=[\w.]+\s*=))");  // with commas, or as the log has them
+    for (const auto& part : brush_->text().split(between, Qt::SkipEmptyParts)) {
         words.push_back(part.trimmed().toStdString());
     }
     try {  // what is wrong with it is said before what is kept is taken away

@@ -1,6 +1,7 @@
 // What a static verdict is told with: error before and after, rivals, limits, and doubts about the data.
 #include <algorithm>
 
+#include "core/counted.h"
 #include "core/no_limit.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -56,7 +57,7 @@ std::string StaticLoop::evidence(const FittedHypothesis& one) const {
     const double structure = std::max({whole_.gain, one.explained, least_gain});
     return "explains " + core::format_number(100 * std::max(0.0, one.explained) / structure, 3) +
            " % of the structure in the residual (fall of -2 log likelihood " + core::format_number(one.explained, 4) +
-           " for " + std::to_string(one.hypothesis.parameters.size()) + " free numbers)" +
+           " for " + core::counted(one.hypothesis.parameters.size(), "free number") + ")" +
            (one.hypothesis.form.empty() ? "" : "; " + one.hypothesis.form);
 }
 

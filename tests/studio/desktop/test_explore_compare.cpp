@@ -172,6 +172,10 @@ TEST_F(Window, ARangeIsTypedAsWellAsDragged) {
     QTest::keyClick(kept, Qt::Key_Return);
     EXPECT_NE(window_->last_error().indexOf("is empty"), -1) << window_->last_error().toStdString();
     EXPECT_EQ(explore.kept().size(), 3U) << "and nothing changed";
+    kept->selectAll();
+    QTest::keyClicks(kept, "gap=2.5mm:10mm pitch=-1deg:1deg");  // as the log has them
+    QTest::keyClick(kept, Qt::Key_Return);
+    EXPECT_EQ(window_->desk().state().explore.brush.size(), 2U) << window_->last_error().toStdString();
 }
 
 TEST_F(Window, PicturesOfTheKeptCasesStandBesideEachOther) {
