@@ -16,6 +16,7 @@
 #include "surrogates/dynamics/theory/film.h"
 #include "surrogates/dynamics/theory/release.h"
 #include "surrogates/dynamics/theory/scaling.h"
+#include "tests/surrogates/dynamics/closed_forms.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {

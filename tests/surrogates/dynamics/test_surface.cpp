@@ -10,6 +10,7 @@
 #include "surrogates/dynamics/simulate/hold_with_jets.h"
 #include "surrogates/dynamics/simulate/surface_motion.h"
 #include "tests/support/support.h"
+#include "tests/surrogates/dynamics/closed_forms.h"
 #include "tests/surrogates/dynamics/models.h"
 
 namespace underbody::dynamics {
