@@ -17,6 +17,7 @@ struct ActionKind {
     std::string example;  ///< a whole line
     bool view = false;    ///< changes what is seen only: successive ones are one step of the history
     State (*apply)(State state, const Words& arguments, const Session& session);
+    bool glance = false;  ///< a look at something else, which never drops what can be redone
 };
 const std::vector<ActionKind>& action_kinds();
 

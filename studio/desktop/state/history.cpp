@@ -1,5 +1,7 @@
 #include "studio/desktop/state/history.h"
 
+#include <algorithm>
+
 namespace underbody::studio {
 
 History::History(State start) : state_(std::make_shared<const State>(std::move(start))) {}
@@ -29,7 +31,8 @@ bool History::act(const Words& words, const Session& session, const std::string&
     }
     const std::string key = merge_key(words);
     const bool view = kind_of(words).view;
-    if (view && position_ < steps_.size()) {
+    const auto undone = steps_.begin() + static_cast<std::ptrdiff_t>(position_);
+    if (kind_of(words).glance && !std::all_of(undone, steps_.end(), [](const Step& step) { return step.view; })) {
         look(std::make_shared<const State>(std::move(next)), line_of(words), gesture);
         return true;
     }

@@ -28,9 +28,9 @@ public:
     /// How many of the steps are done (the others can be redone).
     [[nodiscard]] std::size_t position() const { return position_; }
 
-    /// Carries an action out. False when it changed nothing (no step then). What was undone is dropped, but not by an
-    /// action that changes what is seen only: that one is no step then. Actions of one `gesture` (a drag; not empty)
-    /// with the same merge key are one step. Throws as `applied`; the state stays.
+    /// Carries an action out. False when it changed nothing (no step then). What was undone is dropped, but a change
+    /// not by a look at something else, which is no step then. Actions of one `gesture` (a drag; not empty) with the
+    /// same merge key are one step. Throws as `applied`; the state stays.
     bool act(const Words& words, const Session& session, const std::string& gesture = {});
     /// The line of a gesture is logged when it ends.
     void end_gesture();

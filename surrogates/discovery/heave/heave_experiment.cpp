@@ -205,9 +205,6 @@ bool HeaveExperiment::fit_noise(const std::vector<dynamics::EffectUse>& uses, He
                 for (const double f : {factor, 1 / factor}) {
                     HeaveNoise trial = best_noise;
                     trial.*number *= f;
-                    // its change from reading to reading is known far better than its size and time alone, which go
-                    // along a valley
-                    trial.slow *= number == &HeaveNoise::slow_time ? std::sqrt(f) : 1;
                     trial.slow_time = std::clamp(trial.slow_time, 0.02, 2.0);
                     trial.process = std::max(trial.process, process_floor);
                     if (attempt(trial)) {

@@ -11,6 +11,7 @@
 #include <QTableView>
 #include <QTableWidget>
 #include <QTest>
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -247,8 +248,11 @@ TEST_F(ByKeyboard, EscInAFieldCancelsNothing) {
         }
         throw core::Cancelled();
     });
-    const auto* bar = window_->findChild<QProgressBar*>();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return bar->isVisible(); }));
+    const auto bars = window_->findChildren<QProgressBar*>();
+    ASSERT_TRUE(QTest::qWaitFor([&] {
+        return std::any_of(bars.begin(), bars.end(),
+                           [](auto* bar) { return bar->accessibleName() == "Progress" && bar->isVisible(); });
+    }));
     auto* number = panel<DesignPanel>().findChild<ParameterRow*>("body.length")->number();
     ASSERT_TRUE(tab_to(number));
     const QString before = number->text();

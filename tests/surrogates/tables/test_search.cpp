@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/normal.h"
 #include "core/random.h"
 #include "surrogates/tables/search/acquisition.h"
 #include "surrogates/tables/search/design_search.h"
@@ -172,7 +173,7 @@ TEST(Search, ErrorsHoldOnShapesThatWereLeftOut) {
         const double share = surrogate.check().inside_95;
         for (const double end : {surrogate.check().inside_lower, surrogate.check().inside_upper}) {
             // Wilson: the share whose own spread over 24 shapes reaches what was seen.
-            EXPECT_NEAR(std::abs(end - share), 1.96 * std::sqrt(end * (1 - end) / 24), 1e-9);
+            EXPECT_NEAR(std::abs(end - share), core::sigmas_of_95 * std::sqrt(end * (1 - end) / 24), 1e-9);
         }
         for (std::size_t s = 24; s < shapes.size(); ++s) {  // fresh shapes, at gaps and pitches between
             const std::vector<double> x = {variables[0].unscaled(shapes[s][0]), variables[1].unscaled(shapes[s][1]),

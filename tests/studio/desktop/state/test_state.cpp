@@ -190,7 +190,7 @@ TEST(StudioHistory, LookingAboutKeepsWhatCanBeRedone) {
     const auto act = [&](const char* line, const char* gesture = "") {
         return history.act(words_of(line), *evie_session(), gesture);
     };
-    act("operation gap=5mm");
+    act("operation gap=7mm");
     act("operation gap=6mm");
     const std::string last = state_hash(*history.state());
     history.undo();
@@ -201,10 +201,10 @@ TEST(StudioHistory, LookingAboutKeepsWhatCanBeRedone) {
     EXPECT_EQ(history.steps().size(), 2U);
     ASSERT_TRUE(history.redo());
     EXPECT_EQ(state_hash(*history.state()), last);
-    EXPECT_EQ(lines, (std::vector<std::string>{"operation gap=5mm", "operation gap=6mm", "undo", "workspace tables",
+    EXPECT_EQ(lines, (std::vector<std::string>{"operation gap=7mm", "operation gap=6mm", "undo", "workspace tables",
                                                "turn design 0.3,0.3,-0.1/0,0,0/0,0,1/0.05", "redo"}));
     history.undo();
-    act("operation gap=7mm");
+    act("operation gap=8mm");
     EXPECT_EQ(history.steps().size(), 2U) << "what changes something drops it";
     EXPECT_FALSE(history.redo());
 }
